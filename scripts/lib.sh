@@ -27,6 +27,15 @@ help_if_asked() {
   done
 }
 
+# install_meanwhile OPTION: starts scripts/setup OPTION, while the script goes on; wait_for_installation waits until it is done.
+install_meanwhile() {
+  "$root/scripts/setup" "$1" &
+  installation=$!
+}
+wait_for_installation() {
+  wait "$installation" || die "the packages of the pages could not be installed (see above): scripts/setup --pages"
+}
+
 # for_sed TEXT: prints it as it must stand in the replacement of sed's s#...#...#.
 for_sed() { printf '%s' "$1" | sed 's/[&#\\]/\\&/g'; }
 

@@ -122,10 +122,6 @@ pkg_check_modules(ZeroMQ QUIET IMPORTED_TARGET libzmq)
 handcast_found(found ZeroMQ_FOUND)
 handcast_feature(ZEROMQ "comparison with ZeroMQ in scripts/bench rings (libzmq3-dev)" ${found})
 
-find_program(GNUPLOT gnuplot)
-handcast_found(found GNUPLOT)
-handcast_feature(GNUPLOT "drawing of charts, handcast chart (gnuplot-nox)" ${found})
-
 find_package(GTest QUIET)
 handcast_found(found GTest_FOUND)
 handcast_feature(TESTS "tests and benchmarks (libgtest-dev libgmock-dev)" ${found})

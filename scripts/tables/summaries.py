@@ -37,9 +37,9 @@ def readme(runs, people):
     spill, of = runs.lost("handcast", "paper", "spill")
     yield ""
     yield (f"All of this is simulated ({len(motions)} motions on which nothing was tuned, {people_of(runs, people)} with hands of "
-           f"{len(runs.meshes)} other meshes): the paper's method is our rewriting of it, our network was trained on renders of hands like "
-           f"those that are drawn, more light than the paper's falls beside the hand in {spill} of {of} cases, and no real device has been "
-           f"measured yet.")
+           f"{len(runs.meshes)} other meshes): the paper's method is our own implementation of it, our network was trained on renders of "
+           f"hands like those that are drawn, more light falls beside the hand than with the paper's method in {spill} of {of} cases, and no "
+           f"real device has been measured yet.")
 
 
 def pairs(runs, people):

@@ -54,12 +54,12 @@ void Context::stand_by() {
   open_marks();
 }
 
-Result<ipc::Segment> Context::take_segment(const std::string& stream,
+Result<ipc::Segment> Context::take_segment(std::string_view stream,
                                            const std::vector<std::string>& described) {
   if (std::ranges::find(described, stream) == described.end())
     return fail(Errc::bad_config, fmt::format("ring '{}' is not in the description of {}", stream,
                                               description_.name));
-  if (const auto mapped = mapped_.extract(stream)) return std::move(mapped.mapped());
+  if (const auto mapped = mapped_.extract(std::string(stream))) return std::move(mapped.mapped());
   return open_segment(stream);
 }
 

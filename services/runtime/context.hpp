@@ -49,7 +49,7 @@ class Context {
   /// worker that it replaces has left the ring. Errors: bad_config (the description does not name
   /// the ring, or there is none), those of ipc::Writer::attach().
   template <class T>
-  Result<ipc::Writer<T>> writer(const std::string& stream) {
+  Result<ipc::Writer<T>> writer(std::string_view stream) {
     stand_by();
     auto segment = take_segment(stream, description_.publishes);
     if (!segment) return tl::make_unexpected(segment.error());
@@ -58,7 +58,7 @@ class Context {
   /// A reader of a ring. `wait`: how it waits for messages; empty: as set in [NAME.process].
   /// Errors: see writer().
   template <class T>
-  Result<ipc::Reader<T>> reader(const std::string& stream,
+  Result<ipc::Reader<T>> reader(std::string_view stream,
                                 std::optional<ipc::Wait> wait = std::nullopt) {
     auto segment = take_segment(stream, description_.subscribes);
     if (!segment) return tl::make_unexpected(segment.error());
@@ -94,7 +94,7 @@ class Context {
           calib::Calibration calibration);
 
  private:
-  Result<ipc::Segment> take_segment(const std::string& stream,
+  Result<ipc::Segment> take_segment(std::string_view stream,
                                     const std::vector<std::string>& described);
   Result<ipc::Segment> open_segment(std::string_view stream) const;
   void open_marks();

@@ -24,7 +24,7 @@ bool was_healthy(const Death& death) {
 }  // namespace
 
 Decision decide(DeathRecord record, const Death& death, double jitter) {
-  using Action = Decision::Action;
+  using What = Decision::Action;
   if (was_healthy(death)) record.streak = 0;
   std::erase_if(record.recent_ns, [&](std::int64_t earlier_ns) {
     return death.died_ns - earlier_ns >= kStormWindow_ns;
@@ -34,11 +34,11 @@ Decision decide(DeathRecord record, const Death& death, double jitter) {
   Decision decision;
   decision.wait_ns = wait_after(record.streak++);
   if (death.exit.asks_for_a_person())
-    decision.action = Action::fail;
+    decision.action = What::fail;
   else if (death.exit.is_success())
-    decision.action = Action::retire;
+    decision.action = What::retire;
   else if (record.recent_ns.size() >= kStormDeaths) {
-    decision.action = Action::degrade;
+    decision.action = What::degrade;
     decision.wait_ns = kLongestWait_ns;
   }
   decision.wait_ns = with_jitter(decision.wait_ns, jitter);

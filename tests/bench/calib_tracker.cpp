@@ -19,7 +19,7 @@
 namespace handcast::bench {
 namespace {
 
-using calib::testing::World;
+using calib::samples::World;
 
 constexpr std::array<const char*, 7> kNames{
     "camera's place right, mm",  "camera's place down, mm",  "camera's place forward, mm",
@@ -40,7 +40,7 @@ const calib::Interval& spread_of(const calib::TrackerFit& fit, std::size_t i) {
 }
 
 void add(const World& world, Table& table) {
-  const auto truth = calib::testing::record(world);
+  const auto truth = calib::samples::record(world);
   Result<calib::TrackerFit> fit;
   table.time_ms.push_back(
       timed_us([&] { fit = calib::fit_tracker(truth.camera, truth.samples, truth.sightings); }) /
@@ -52,14 +52,14 @@ void add(const World& world, Table& table) {
   }
   ++table.fits;
   table.qualities.push_back(fit->quality);
-  const auto errors = calib::testing::errors_of(truth, *fit, world.offset_s);
+  const auto errors = calib::samples::errors_of(truth, *fit, world.offset_s);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const auto& spread = spread_of(*fit, i);
     table.errors[i].push_back(std::abs(errors[i]));
     table.sds[i].push_back(spread.sd);
     table.held[i] += errors[i] >= spread.low && errors[i] <= spread.high;
   }
-  table.middle_mm.push_back(calib::testing::error_mm(truth, *fit, calib::testing::kMiddle_m));
+  table.middle_mm.push_back(calib::samples::error_mm(truth, *fit, calib::samples::kMiddle_m));
   table.expected_mm.push_back(fit->place_errors[0].whole_mm);
   table.rotation_deg.push_back(std::hypot(errors[3], errors[4], errors[5]));
   table.held_out_px.push_back(fit->held_out.median_px);
@@ -101,7 +101,7 @@ std::vector<Goal> goals_of(const Table& table) {
 int main(int argc, char** argv) {
   using namespace handcast;
   unsigned seeds = 200;
-  calib::testing::World world;
+  calib::samples::World world;
   std::string goals_file;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string option = argv[i];

@@ -18,8 +18,8 @@
 namespace handcast::bench {
 namespace {
 
-using renderer::testing::kFist;
-using renderer::testing::kOpen;
+using renderer::samples::kFist;
+using renderer::samples::kOpen;
 
 double p50(const FrameTimes& times) { return median(times.frame_us); }
 double p99(const FrameTimes& times) { return percentile(times.frame_us, 0.99); }

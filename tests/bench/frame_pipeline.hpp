@@ -14,7 +14,7 @@ namespace handcast::bench {
 struct FrameScene {
   std::string name;
   int hands = 1;  ///< the left one, or both
-  renderer::testing::Pose pose = renderer::testing::kOpen;
+  renderer::samples::Pose pose = renderer::samples::kOpen;
   double distance_m = 0.73;  ///< as far as the twin's
   /// Size of the screen and of the camera's image. The hand keeps its size in pixels.
   /// @{

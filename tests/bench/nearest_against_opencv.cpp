@@ -25,7 +25,7 @@ struct Problem {
 
 Problem moved_hand(bool whole_frame) {
   constexpr renderer::Rect kScreen{0, 0, 1024, 768};
-  const PainterScene scene("", 1, renderer::testing::kOpen, kScreen.x1, kScreen.y1);
+  const PainterScene scene("", 1, renderer::samples::kOpen, kScreen.x1, kScreen.y1);
   const auto painter = renderer::make_cpu_painter(kScreen.x1, kScreen.y1);
   painter->draw(scene.drawn, kScreen);
   const renderer::Rect area = whole_frame ? kScreen : scene.region;

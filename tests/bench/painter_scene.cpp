@@ -41,7 +41,7 @@ Texture fine_pattern() {
 
 }  // namespace
 
-PainterScene::PainterScene(std::string its_name, int hands, const renderer::testing::Pose& pose,
+PainterScene::PainterScene(std::string its_name, int hands, const renderer::samples::Pose& pose,
                            int width_px, int height_px, bool smooth)
     : name(std::move(its_name)), picture_(fine_pattern(), smooth) {
   const calib::Calibration calibration = rig_of(width_px, height_px);
@@ -54,7 +54,7 @@ PainterScene::PainterScene(std::string its_name, int hands, const renderer::test
   grid = renderer::test::bent_grid({0, 0, width_px, height_px});
 }
 
-void PainterScene::place_hand(Side side, const renderer::testing::Pose& pose, float aside_m,
+void PainterScene::place_hand(Side side, const renderer::samples::Pose& pose, float aside_m,
                               const calib::Calibration& calibration) {
   auto mesh = load_hand_or_default({}, side);
   if (!mesh) throw std::runtime_error(mesh.error().what);

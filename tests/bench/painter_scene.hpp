@@ -16,7 +16,7 @@ class PainterScene {
  public:
   /// One hand (the left one) or two, 0.73 m from the camera. The hand files must exist.
   /// `smooth`: see MipChain.
-  PainterScene(std::string name, int hands, const renderer::testing::Pose& pose, int width_px,
+  PainterScene(std::string name, int hands, const renderer::samples::Pose& pose, int width_px,
                int height_px, bool smooth = true);
 
   std::string name;                        ///< e.g. "one hand, open"
@@ -32,7 +32,7 @@ class PainterScene {
     std::uint64_t revision = renderer::new_revision();
   };
 
-  void place_hand(renderer::Side side, const renderer::testing::Pose& pose, float aside_m,
+  void place_hand(renderer::Side side, const renderer::samples::Pose& pose, float aside_m,
                   const calib::Calibration& calibration);
   void make_mask(int width_px, int height_px);
 

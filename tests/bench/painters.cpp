@@ -169,10 +169,10 @@ int run(const Settings& settings) {
       "region\n",
       settings.width_px, settings.height_px, settings.frames);
   std::vector<Goal> goals;
-  for (const auto& [name, hands, pose] : {std::tuple{"one hand, open", 1, renderer::testing::kOpen},
-                                          {"one hand, folded", 1, renderer::testing::kFist},
-                                          {"two hands, open", 2, renderer::testing::kOpen},
-                                          {"two hands, folded", 2, renderer::testing::kFist}}) {
+  for (const auto& [name, hands, pose] : {std::tuple{"one hand, open", 1, renderer::samples::kOpen},
+                                          {"one hand, folded", 1, renderer::samples::kFist},
+                                          {"two hands, open", 2, renderer::samples::kOpen},
+                                          {"two hands, folded", 2, renderer::samples::kFist}}) {
     const PainterScene scene(name, hands, pose, settings.width_px, settings.height_px);
     const auto times = bench.measure(scene);
     if (!times) {

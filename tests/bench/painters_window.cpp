@@ -60,7 +60,7 @@ Result<void> run(int frames) {
   fmt::print("{}\n{:<18} {:>16} {:>8} {:>16} {:>8}\n", (*painter)->gpu().sentence(),
              "µs until shown", "from the GPU p50", "p99", "by memory p50", "p99");
   for (const auto& [name, hands] : {std::pair{"one hand", 1}, {"two hands", 2}}) {
-    const PainterScene scene(name, hands, testing::kOpen, kWidth, kHeight);
+    const PainterScene scene(name, hands, samples::kOpen, kWidth, kHeight);
     const auto times = measure(**window, **painter, scene, frames);
     if (!times) return tl::make_unexpected(times.error());
     fmt::print("{:<18} {:>16.0f} {:>8.0f} {:>16.0f} {:>8.0f}\n", name, median(times->from_gpu_us),

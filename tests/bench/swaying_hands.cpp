@@ -35,7 +35,7 @@ calib::Calibration rig_above_hands(double distance_m) {
 }
 
 SwayingHands::SwayingHands(const calib::Calibration& rig, int hands,
-                           const renderer::testing::Pose& pose)
+                           const renderer::samples::Pose& pose)
     : rig_(rig) {
   const auto add = [&](Side side, float aside_m) {
     hands_.push_back({side, posed(*load_hand_or_default({}, side), pose), aside_m});

@@ -15,7 +15,7 @@ class SwayingHands {
  public:
   /// One hand (the left one) or two.
   explicit SwayingHands(const calib::Calibration& rig, int hands = 1,
-                        const renderer::testing::Pose& pose = renderer::testing::kOpen);
+                        const renderer::samples::Pose& pose = renderer::samples::kOpen);
 
   /// Passes on all messages that have arrived by `now_ns`, since the last call.
   void deliver(renderer::Pipeline& pipeline, std::int64_t now_ns);

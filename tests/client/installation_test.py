@@ -113,7 +113,6 @@ class TheInstalledTree(unittest.TestCase):
         said = handcast("detect", "--backend", "handcast", "--json", "--quiet", picture)
         self.assertIn("picture.png", said)
 
-    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
     def test_sweeps_a_plan_and_draws_a_chart(self):
         plan, results = scratch / "plan.toml", scratch / "plan.csv"
         plan.write_text(f'rig = "{rig_file()}"\nseconds = 0.2\nwarm_up_s = 0.1\n')

@@ -14,7 +14,7 @@ namespace handcast::ipc {
 namespace {
 
 using namespace std::chrono_literals;
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 
 /// A child process that runs `body` until kill(), or until the test ends.
 class Child {

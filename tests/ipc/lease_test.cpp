@@ -24,7 +24,7 @@ namespace handcast::ipc {
 namespace {
 
 using namespace std::chrono_literals;
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 using ::testing::HasSubstr;
 
 constexpr std::size_t kTail = 100;

@@ -13,7 +13,7 @@
 namespace handcast::ipc {
 namespace {
 
-using testing::SmallRing;
+using samples::SmallRing;
 
 struct Tally {
   std::uint64_t taken = 0, torn = 0, backwards = 0, revoked = 0;

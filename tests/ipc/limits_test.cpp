@@ -12,7 +12,7 @@
 namespace handcast::ipc {
 namespace {
 
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 
 /// Ends the child with exit code 1 and a message unless `holds`.
 void insist(bool holds, const char* what, const std::string& said) {

@@ -11,7 +11,7 @@ namespace handcast::ipc {
 namespace {
 
 using namespace std::chrono_literals;
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 using ::testing::HasSubstr;
 
 TEST(Ring, ASecondWriterIsRefusedWhileTheFirstLives) {

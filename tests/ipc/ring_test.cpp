@@ -9,7 +9,7 @@
 namespace handcast::ipc {
 namespace {
 
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 using ::testing::HasSubstr;
 
 TEST(Ring, WhatIsPublishedIsRead) {

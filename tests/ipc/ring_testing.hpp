@@ -12,7 +12,7 @@
 #include "ipc/ring/writer.hpp"
 
 /// Messages and helpers for the tests of the rings.
-namespace handcast::ipc::testing {
+namespace handcast::ipc::samples {
 
 /// A small message.
 struct Note {
@@ -94,4 +94,4 @@ inline Note note(std::uint64_t value, std::int64_t origin_ns = 0) {
 /// A deadline for calls that must not wait.
 inline const Deadline kNow = Deadline::now();
 
-}  // namespace handcast::ipc::testing
+}  // namespace handcast::ipc::samples

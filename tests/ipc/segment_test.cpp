@@ -11,7 +11,7 @@ namespace handcast::ipc {
 namespace {
 
 using ::testing::HasSubstr;
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 
 SegmentHeader& header_of(const Segment& segment) {
   return *reinterpret_cast<SegmentHeader*>(segment.data());

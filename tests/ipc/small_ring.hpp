@@ -8,7 +8,7 @@
 #include "ipc/ring/protocol.hpp"
 #include "ipc/ring/real_atomics.hpp"
 
-namespace handcast::ipc::testing {
+namespace handcast::ipc::samples {
 
 /// A ring in private memory with the production protocol. All words of a message are equal.
 class SmallRing {
@@ -36,4 +36,4 @@ class SmallRing {
   ControlWords<RealAtomics> words_;
 };
 
-}  // namespace handcast::ipc::testing
+}  // namespace handcast::ipc::samples

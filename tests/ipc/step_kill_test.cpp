@@ -13,7 +13,7 @@
 namespace handcast::ipc {
 namespace {
 
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 
 constexpr int kPayloadWords = 4;
 constexpr int kLeaserRow = 1, kSleeperRow = 2, kVictimRow = 0;

@@ -13,7 +13,7 @@
 namespace handcast::ipc {
 namespace {
 
-using testing::SmallRing;
+using samples::SmallRing;
 
 constexpr std::size_t kHalf = SmallRing::kWords / 2 * sizeof(PayloadWord);
 constexpr int kRows = SmallRing::kRows;

@@ -8,7 +8,7 @@
 namespace handcast::ipc {
 namespace {
 
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 
 RingView view_of(const Segment& segment) { return must(RingView::open(duplicate(segment.fd()))); }
 

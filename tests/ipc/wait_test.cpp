@@ -16,7 +16,7 @@ namespace handcast::ipc {
 namespace {
 
 using namespace std::chrono_literals;
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 using ::testing::HasSubstr;
 
 constexpr int kLong_ms = 20'000;

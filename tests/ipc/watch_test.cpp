@@ -13,7 +13,7 @@ namespace handcast::ipc {
 namespace {
 
 using namespace std::chrono_literals;
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 
 /// The ring as a program outside the rig gets it: through a descriptor that is only for reading.
 Segment for_reading(const Segment& segment) {

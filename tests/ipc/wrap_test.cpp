@@ -8,7 +8,7 @@
 namespace handcast::ipc {
 namespace {
 
-using namespace handcast::ipc::testing;
+using namespace handcast::ipc::samples;
 
 constexpr auto kLast = kSequenceMask;
 

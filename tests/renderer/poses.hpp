@@ -6,7 +6,7 @@
 
 #include "renderer/hand/hand_mesh.hpp"
 
-namespace handcast::renderer::testing {
+namespace handcast::renderer::samples {
 
 /// Rotations of the joints from rest, in degrees. Fingers: abduction (towards the thumb), then
 /// flexion of MCP, PIP and DIP. Thumb: rotation of the CMC about its dorsal axis (towards the edge
@@ -65,4 +65,4 @@ inline JointFrames posed(const HandMesh& hand, const Pose& pose) {
   return frames;
 }
 
-}  // namespace handcast::renderer::testing
+}  // namespace handcast::renderer::samples

@@ -23,8 +23,8 @@
 namespace handcast::storm {
 namespace {
 
-using ipc::testing::again;
-using ipc::testing::must;
+using ipc::samples::again;
+using ipc::samples::must;
 
 constexpr int kUsualKills = 500;
 constexpr std::int64_t kHang_ns =

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "ipc/msg/rung.hpp"
@@ -36,7 +35,7 @@ std::vector<Metric> make_metrics() {
     add(plain, fmt::format("/{}", plain));
   for (const char* of_fault : {"usual_mm", "worst_mm", "dark_ms", "recovery_ms"})
     add(fmt::format("fault_{}", of_fault), fmt::format("/fault/{}", of_fault));
-  add(std::string(kDetector), "/detector/backend");
+  add("detector", "/detector/backend");  // a word
   for (const char* of_detector : {"age_ms", "ms_p50", "missed", "invented"})
     add(fmt::format("detector_{}", of_detector), fmt::format("/detector/{}", of_detector));
   add("detector_px_mean", "/detector/error_px/mean");
@@ -69,7 +68,7 @@ Row begin_row(const Plan& plan, const Run& run) {
   return row;
 }
 
-/// A number, or the word of kDetector. Empty if there is neither.
+/// A number or a word. Empty if there is neither.
 std::string print_figure(const nlohmann::json& json, const nlohmann::json::json_pointer& place) {
   if (!json.contains(place)) return {};
   if (json[place].is_string()) return json[place].get<std::string>();
@@ -105,10 +104,6 @@ Row failed_row(const Plan& plan, const Run& run, const std::string& error) {
 bool is_machine_time(std::string_view column) {
   return column.starts_with("frame_us_") || column.starts_with("stage_us_") ||
          column == "detector_ms_p50";
-}
-
-bool is_metric(std::string_view column) {
-  return std::ranges::find(metrics(), column, &Metric::column) != metrics().end();
 }
 
 }  // namespace handcast::sweep

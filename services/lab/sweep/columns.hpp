@@ -19,9 +19,5 @@ Row failed_row(const Plan& plan, const Run& run, const std::string& error);
 
 /// True for a column of times measured on this machine, which differ when a run is repeated.
 bool is_machine_time(std::string_view column);
-/// The metric that is a word and not a number: the back end that has found the landmarks.
-inline constexpr std::string_view kDetector = "detector";
-/// True for a column of metrics. The columns between the variant and the metrics are axes.
-bool is_metric(std::string_view column);
 
 }  // namespace handcast::sweep

@@ -135,8 +135,7 @@ Result<config::Rig> rig_of(const Plan& plan, const Run& run) {
   for (const auto& setting : plan.settings) set(setting.path, setting.choices.front());
   for (const auto& setting : variant.settings) set(setting.path, setting.choices.front());
   for (const auto& axis : plan.grids[run.grid]) set(axis.path, *run.choice(plan, axis.path));
-  const auto reported_before = [](const std::string&) {};  // when the plan was read
-  return config::parse_rig(variant.rig_text, variant.rig_file, settings, reported_before);
+  return config::parse_rig(variant.rig_text, variant.rig_file, settings);
 }
 
 Result<Expansion> expand(const Plan& plan) {

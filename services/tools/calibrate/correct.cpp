@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/calibrate/correct.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <utility>
 
 #include "calib/drift/correction.hpp"
 #include "ipc/client/stream.hpp"
 #include "services/pose/drift/calibration_watch.hpp"
+#include "services/tools/calibrate/desk.hpp"
 #include "services/tools/calibrate/kept_file.hpp"
-#include "services/tools/calibrate/keys.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -75,25 +73,6 @@ Result<calib::Drift> watch(const Options& options, const config::Rig& rig,
   return watch.drift();
 }
 
-/// Asks whether to write the correction. Without a person, or with --yes, it is written.
-Result<bool> is_wanted(const Options& options, Keys& keys) {
-  if (options.yes || !keys.has_person()) return true;
-  fmt::print(stderr, "  Enter corrects the calibration by this; s leaves it as it is\n");
-  for (;; sleep_until_ns(now_ns() + to_ns(20ms))) {
-    if (auto on = not_stopped(); !on) return tl::make_unexpected(on.error());
-    const auto key = keys.pressed();
-    if (key && key->character == '\n') return true;
-    if (key && key->character == 's') return false;
-  }
-}
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  return fmt::format("{:%Y-%m-%d}", local);
-}
-
 Result<void> check_file(const config::Rig& rig) {
   if (!rig.calibration.empty()) return {};
   return fail(Errc::bad_config,
@@ -118,11 +97,13 @@ Result<void> correct_tracker(const Options& options, const config::Rig& rig,
   if (!place) return tl::make_unexpected(place.error());
   corrected.camera_from_tracker = *place;
   fmt::print(stderr, "the tracker has moved by {}\n", describe(*drift));
-  const auto wanted = is_wanted(options, keys);
+  const auto wanted =
+      options.yes ? Result<bool>(true)
+                  : keys.confirm("Enter corrects the calibration by this; s leaves it as it is");
   if (!wanted) return tl::make_unexpected(wanted.error());
   if (!*wanted) return {};
-  corrected.made.tracker += fmt::format("; {}: corrected by {:.1f} mm and {:.2f} degrees", today(),
-                                        drift->across_mm, drift->turn_deg);
+  corrected.made.tracker += fmt::format("; {}: corrected by {:.1f} mm and {:.2f} degrees",
+                                        local_time("%Y-%m-%d"), drift->across_mm, drift->turn_deg);
   const auto written = write_and_keep(rig.calibration, calib::print_calibration(corrected));
   if (!written) return tl::make_unexpected(written.error());
   fmt::print("the calibration is in {}\n`handcast reload` applies it; --undo takes it back\n",

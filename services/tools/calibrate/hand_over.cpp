@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/calibrate/hand_over.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 
 #include "config/settings/quoted.hpp"
 #include "ipc/base/write_whole.hpp"
@@ -54,13 +52,10 @@ std::vector<config::MeasuredSetting> names_of(const Options& options, const conf
 }
 
 std::string heading_of(const fs::path& rig_file) {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
   return fmt::format(
       "# Measured values, which win over those of {0}. `handcast calibrate --apply` wrote\n"
-      "# this file at {1:%Y-%m-%d %H:%M}; without it the rig has the values of {0} again.\n",
-      rig_file.filename().string(), local);
+      "# this file at {1}; without it the rig has the values of {0} again.\n",
+      rig_file.filename().string(), local_time("%Y-%m-%d %H:%M"));
 }
 
 /// Writes settings to the file of measured ones; others that it has stay. Returns a sentence.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/calibrate/kept_file.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <ctime>
 #include <functional>
@@ -26,12 +26,7 @@ fs::path in_folder(const fs::path& file, const std::string& stem) {
 
 /// Of the first file that this process keeps: what it changes is taken back together.
 const std::string& time_in_names() {
-  static const std::string text = [] {
-    const std::time_t now = std::time(nullptr);
-    std::tm local{};
-    localtime_r(&now, &local);
-    return fmt::format("{:%Y-%m-%dT%H%M%S}", local);
-  }();
+  static const std::string text = local_time("%Y-%m-%dT%H%M%S");
   return text;
 }
 
@@ -99,6 +94,14 @@ Result<fs::path> keep_old(const fs::path& file) {
 }
 
 }  // namespace
+
+std::string local_time(const char* format) {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  std::array<char, 64> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), format, &local)};
+}
 
 Result<std::string> write_and_keep(const fs::path& file, const std::string& text) {
   std::string sentence = file.string();

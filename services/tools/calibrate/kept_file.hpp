@@ -9,6 +9,9 @@
 /// Files that are never lost: what it was is kept beside it, with the time in its name.
 namespace handcast::calibrate {
 
+/// The time of now where this computer is, as strftime() prints it.
+std::string local_time(const char* format);
+
 /// Writes the text to the file. If there was one, it is kept as STEM.TIME.EXTENSION:
 /// rig.2026-11-25T001500.toml. All files that one process keeps have the same time. Returns the
 /// names of both: "rig.toml; the one before it is kept as ...". Errors: unavailable (a file cannot

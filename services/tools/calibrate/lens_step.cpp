@@ -3,19 +3,32 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <sstream>
 
 #include "calib/solve/board/board_finder.hpp"
 #include "calib/solve/lens/auto_capture.hpp"
 #include "calib/solve/lens/coverage.hpp"
 #include "calib/solve/lens/lens_fit.hpp"
-#include "services/tools/calibrate/lens_memory.hpp"
+#include "ipc/base/input_file.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "services/tools/calibrate/pictures.hpp"
+#include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
 
 using namespace std::chrono_literals;
+
+std::filesystem::path file_of(const std::filesystem::path& folder, const std::string& step) {
+  return folder / (step + ".covariance");
+}
+
+/// In the order of calib::kLensParameters.
+std::array<double, 9> values_of(const calib::CameraModel& c) {
+  return {c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.k1, c.k2, c.p1, c.p2, c.k3};
+}
 
 constexpr std::size_t kEnoughViews = 15;
 /// What a good fit stays below: the error of what it has not seen, and that of the focal length.
@@ -99,7 +112,9 @@ Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> 
   return outcome;
 }
 
-/// Measures one camera, and sets its lens.
+/// Measures one camera from a board that a person shows, and sets its lens. Ends when enough was
+/// seen, Enter is pressed or the time is over. Errors: those of calib::fit_lens() and of
+/// client::Stream.
 Result<Outcome> measure(Desk& desk, const Ring& ring, calib::CameraModel& camera) {
   const auto views = take_views(desk, ring, camera);
   if (!views) return tl::make_unexpected(views.error());
@@ -111,7 +126,45 @@ Result<Outcome> measure(Desk& desk, const Ring& ring, calib::CameraModel& camera
   return remember_lens(desk.options.folder, ring.step, *fit).map([&] { return outcome; });
 }
 
+Result<Outcome> measure_first(Desk& desk) { return measure(desk, kFirst, desk.draft.camera); }
+
+Result<Outcome> measure_second(Desk& desk) {
+  if (!desk.draft.camera2) return fail(Errc::bad_config, "the rig has no second camera");
+  return measure(desk, kSecond, desk.draft.camera2->camera);
+}
+
+std::vector<std::string> scene(const Options& options, double /*camera_hz*/) {
+  return board_scene(options, 1);
+}
+
+std::vector<std::string> second_scene(const Options& options, double /*camera_hz*/) {
+  auto settings = board_scene(options, 1);
+  settings.emplace_back("twin.prop.views=second");
+  return settings;
+}
+
+const char* instruct(const Options& /*options*/) {
+  return "Hold the printed board in front of the camera, still for a moment at each place: in the "
+         "middle and in every corner of the image, near and far, tilted to all sides.";
+}
+
+const char* instruct_second(const Options& /*options*/) {
+  return "The same with the second camera: hold the board in the middle and in every corner of its "
+         "image, near and far, tilted to all sides.";
+}
+
 }  // namespace
+
+const StepEntry kLensStep{.step = Step::lens,
+                          .made = &calib::Made::lens,
+                          .scene = scene,
+                          .instruct = instruct,
+                          .measure = measure_first};
+const StepEntry kSecondLensStep{.step = Step::lens2,
+                                .made = &calib::Made::lens2,
+                                .scene = second_scene,
+                                .instruct = instruct_second,
+                                .measure = measure_second};
 
 std::string lens_advice(std::size_t views, std::size_t wanted, const std::string& place) {
   if (views == 0) return "Hold the board still in front of the camera";
@@ -123,11 +176,34 @@ std::string lens_advice(std::size_t views, std::size_t wanted, const std::string
   return views >= wanted ? "Almost done: " + place : place;
 }
 
-Result<Outcome> measure_lens(Desk& desk) { return measure(desk, kFirst, desk.draft.camera); }
+Result<void> remember_lens(const std::filesystem::path& folder, const std::string& step,
+                           const calib::LensFit& fit) {
+  std::string text;
+  for (const double value : values_of(fit.camera)) text += fmt::format("{} ", value);
+  text += "\n";
+  for (const auto& row : fit.covariance) {
+    for (const double value : row) text += fmt::format("{} ", value);
+    text += "\n";
+  }
+  return write_whole(file_of(folder, step), text);
+}
 
-Result<Outcome> measure_second_lens(Desk& desk) {
-  if (!desk.draft.camera2) return fail(Errc::bad_config, "the rig has no second camera");
-  return measure(desk, kSecond, desk.draft.camera2->camera);
+std::optional<calib::LensCovariance> recall_lens(const std::filesystem::path& folder,
+                                                 const std::string& step,
+                                                 const calib::CameraModel& camera) {
+  constexpr double kSame = 1e-6;  // a draft is text
+  const auto text = read_input(file_of(folder, step), kMostText);
+  if (!text) return {};
+  std::istringstream file(*text);
+  for (const double wanted : values_of(camera)) {
+    double value = 0;
+    if (!(file >> value) || std::abs(value - wanted) > kSame * (1 + std::abs(wanted))) return {};
+  }
+  calib::LensCovariance covariance{};
+  for (auto& row : covariance)
+    for (double& value : row)
+      if (!(file >> value)) return {};
+  return covariance;
 }
 
 }  // namespace handcast::calibrate

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+
 #include "calib/solve/board/grey_view.hpp"
+#include "calib/solve/lens/lens_fit.hpp"
 #include "ipc/msg/camera_frame.hpp"
-#include "services/tools/calibrate/desk.hpp"
 
+/// What the steps `lens` and `lens2` share with others.
 namespace handcast::calibrate {
-
-/// Measures the camera's lens from a board that a person shows; sets draft.camera. Ends when
-/// enough was seen, Enter is pressed or the time is over. Errors: those of calib::fit_lens() and of
-/// client::Stream.
-Result<Outcome> measure_lens(Desk& desk);
-/// The same for the second camera; sets draft.camera2->camera. Errors: also bad_config (the rig has
-/// one camera).
-Result<Outcome> measure_second_lens(Desk& desk);
 
 /// What to do next. `wanted`: images that are enough; `place`: where the board was not seen yet, or
 /// how it was not tilted; empty if it was everywhere.
@@ -23,5 +20,15 @@ inline calib::GreyView view_of(const msg::CameraFrame& frame) {
   const auto width = static_cast<int>(frame.width_px);
   return {frame.pixels(), width, static_cast<int>(frame.height_px), width};
 }
+
+/// How well a lens is known, for the steps that stand on it: the calibration file has only the lens
+/// itself. Writes the lens and its covariance to FOLDER/STEP.covariance. Errors: unavailable.
+Result<void> remember_lens(const std::filesystem::path& folder, const std::string& step,
+                           const calib::LensFit& fit);
+
+/// The covariance of this lens; nothing if another one was measured last, or none.
+std::optional<calib::LensCovariance> recall_lens(const std::filesystem::path& folder,
+                                                 const std::string& step,
+                                                 const calib::CameraModel& camera);
 
 }  // namespace handcast::calibrate

@@ -13,10 +13,8 @@
 #include "ipc/base/program.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/stop_signal.hpp"
-#include "services/tools/calibrate/check_steps.hpp"
 #include "services/tools/calibrate/correct.hpp"
 #include "services/tools/calibrate/hand_over.hpp"
-#include "services/tools/calibrate/installed.hpp"
 #include "services/tools/calibrate/own_devices.hpp"
 #include "services/tools/calibrate/points.hpp"
 #include "services/tools/calibrate/steps.hpp"
@@ -31,14 +29,13 @@ int complain(const Error& error) {
 
 /// Does one step, and keeps what it has measured. False if the person has left the step out.
 Result<bool> do_step(const Options& options, const RunningAs& running, Session& session, Keys& keys,
-                     const StepEntry& entry) {
-  auto wanted = is_wanted(options, keys, entry);
-  if (!wanted || !*wanted) return wanted;
+                     Step step) {
   auto draft = session.draft();
   const auto outcome =
-      with_rig(options, running, session.report().parent_path(), draft, keys, entry);
+      measure_step(options, running, session.report().parent_path(), draft, keys, step);
   if (!outcome) return tl::make_unexpected(outcome.error());
-  return session.keep(entry.step, *outcome, draft).map([] { return true; });
+  if (!*outcome) return false;
+  return session.keep(step, **outcome, draft).map([] { return true; });
 }
 
 /// Measures what is left, or was asked for. `done`: how many steps.
@@ -46,7 +43,7 @@ Result<void> measure_steps(const Options& options, const RunningAs& running, Ses
                            std::span<const Step> steps, int& done) {
   Keys keys;
   for (const Step step : steps) {
-    const auto kept = do_step(options, running, session, keys, entry_of(step));
+    const auto kept = do_step(options, running, session, keys, step);
     if (!kept) return fail_in(config::word_of(step), kept.error());
     done += *kept ? 1 : 0;
   }

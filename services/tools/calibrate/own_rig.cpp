@@ -16,7 +16,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/camera_frame.hpp"
-#include "services/tools/calibrate/keys.hpp"
+#include "services/tools/calibrate/desk.hpp"
 
 namespace handcast::calibrate {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/calibrate/pair_views.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "calib/solve/pair/pair_off.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "services/tools/calibrate/lens_step.hpp"
+#include "services/tools/calibrate/pair_step.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -48,13 +47,10 @@ Result<ipc::Sample<msg::CameraFrame>> image_at(Frames& frames, std::int64_t time
   }
 }
 
-/// What is wanted: views of many places, or some of any one place.
-enum class Wanted { places, one_place };
-
 /// Finds the board in both images of a time, and keeps what is wanted. One thread.
 class PairViews {
  public:
-  PairViews(Desk& desk, Wanted wanted)
+  PairViews(Desk& desk, PairWanted wanted)
       : camera_(desk.draft.camera),
         second_camera_(*desk.draft.camera2),
         wanted_(wanted),
@@ -76,18 +72,18 @@ class PairViews {
                is_second_still = second && second_.see((*other)->header.origin_ns, *second);
     if (is_still && !second) note_missing(*first);
     if (!is_still || !is_second_still) return {};
-    if (wanted_ == Wanted::places && !capture_.take_still(*first)) return {};
+    if (wanted_ == PairWanted::places && !capture_.take_still(*first)) return {};
     note_distance(*first);
     views_.push_back({std::move(*first), std::move(*second)});
     return {};
   }
 
   bool are_enough() const {
-    if (wanted_ == Wanted::one_place) return views_.size() >= kEnoughOfOnePlace;
+    if (wanted_ == PairWanted::one_place) return views_.size() >= kEnoughOfOnePlace;
     return views_.size() >= kEnoughViews && is_deep();
   }
   double share() const {
-    const auto enough = wanted_ == Wanted::one_place ? kEnoughOfOnePlace : kEnoughViews;
+    const auto enough = wanted_ == PairWanted::one_place ? kEnoughOfOnePlace : kEnoughViews;
     return std::min(0.99, static_cast<double>(views_.size()) / static_cast<double>(enough));
   }
   std::string advice() const {
@@ -95,7 +91,7 @@ class PairViews {
     if (!sees_first_) return "Only the second camera sees the board; hold it before the first, too";
     if (!sees_second_)
       return "Only the first camera sees the board; hold it before the second, too";
-    if (wanted_ == Wanted::one_place) return "Hold the board still";
+    if (wanted_ == PairWanted::one_place) return "Hold the board still";
     if (2 * views_.size() > kEnoughViews && !is_deep())
       return views_.size() < kEnoughViews
                  ? "Hold the board nearer, or farther away"
@@ -123,7 +119,7 @@ class PairViews {
 
   calib::CameraModel camera_;
   calib::SecondCamera second_camera_;
-  Wanted wanted_;
+  PairWanted wanted_;
   calib::BoardFinder finder_;
   calib::AutoCapture capture_;
   calib::Stillness first_, second_;
@@ -133,7 +129,9 @@ class PairViews {
   double nearest_m_ = std::numeric_limits<double>::max(), farthest_m_ = 0;
 };
 
-Result<PairSeen> take(Desk& desk, Wanted wanted) {
+}  // namespace
+
+Result<PairSeen> take_pair_views(Desk& desk, PairWanted wanted) {
   auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, "camera.frames");
   if (!frames) return tl::make_unexpected(frames.error());
   auto second_frames = client::open_stream<msg::CameraFrame>(desk.rig.name, "camera2.frames");
@@ -154,13 +152,5 @@ Result<PairSeen> take(Desk& desk, Wanted wanted) {
   }
   return std::move(views).taken();
 }
-
-}  // namespace
-
-Result<std::vector<calib::PairView>> take_pair_views(Desk& desk) {
-  return take(desk, Wanted::places).map([](PairSeen&& seen) { return std::move(seen.views); });
-}
-
-Result<PairSeen> look_at_pair(Desk& desk) { return take(desk, Wanted::one_place); }
 
 }  // namespace handcast::calibrate

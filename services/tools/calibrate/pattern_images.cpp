@@ -33,12 +33,6 @@ Result<PatternImages> PatternImages::open(Desk& desk) {
   return PatternImages(desk, std::move(*frames));
 }
 
-void PatternImages::fill(std::uint8_t level, std::uint8_t* levels) const {
-  const auto count = static_cast<std::size_t>(desk_.screen.width_px()) *
-                     static_cast<std::size_t>(desk_.screen.height_px());
-  std::fill_n(levels, count, level);
-}
-
 /// Changes the light `count` times, at least `hold_s` apart, and watches.
 Result<void> PatternImages::toggle(int count, double hold_s, Watched& watched) {
   for (int i = 0; i < count; ++i) {
@@ -46,7 +40,7 @@ Result<void> PatternImages::toggle(int count, double hold_s, Watched& watched) {
     const bool is_bright = i % 2 == 0;
     // Times that are no multiple of the camera's period meet its exposures everywhere.
     const auto until = Deadline::at_ns(now_ns() + seconds_to_ns(hold_s + 0.0031 * (i % 7)));
-    desk_.screen.show([&](std::uint8_t* levels) { fill(is_bright ? 255 : 0, levels); });
+    desk_.screen.show_level(is_bright ? 255 : 0);
     const auto light = desk_.screen.first_light(Deadline::in(2s));
     if (!light) return tl::make_unexpected(light.error());
     period_ns_ =
@@ -95,13 +89,18 @@ Result<calib::LightDelay> PatternImages::measure_delay(std::size_t most_toggles)
 }
 
 Result<PatternImages::Image> PatternImages::image_of_level(std::uint8_t level) {
-  return image([&](std::uint8_t* levels) { fill(level, levels); });
+  return image_after([&] { desk_.screen.show_level(level); });
 }
 
 Result<PatternImages::Image> PatternImages::image(
     const std::function<void(std::uint8_t* levels)>& draw) {
+  return image_after([&] { desk_.screen.show(draw); });
+}
+
+/// The image after `show` has shown a picture.
+Result<PatternImages::Image> PatternImages::image_after(const std::function<void()>& show) {
   if (auto runs = desk_.own_rig.check(); !runs) return tl::make_unexpected(runs.error());
-  desk_.screen.show(draw);
+  show();
   const auto light = desk_.screen.first_light(Deadline::in(2s));
   if (!light) return tl::make_unexpected(light.error());
   for (const auto until = Deadline::in(2s);;) {

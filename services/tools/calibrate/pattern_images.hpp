@@ -40,7 +40,7 @@ class PatternImages {
 
   PatternImages(Desk& desk, client::Stream<msg::CameraFrame> frames)
       : desk_(desk), frames_(std::move(frames)) {}
-  void fill(std::uint8_t level, std::uint8_t* levels) const;
+  Result<Image> image_after(const std::function<void()>& show);
   Result<void> toggle(int count, double hold_s, Watched& watched);
   double hold_s_of(const calib::LightDelay& delay) const;
   Result<calib::LightDelay> measure_delay(std::size_t most_toggles);

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cctype>
 
-#include "calib/solve/board/board_name.hpp"
 #include "config/second_view.hpp"
+#include "config/settings/choice.hpp"
 #include "ipc/base/write_whole.hpp"
-#include "services/tools/calibrate/check_steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -104,7 +103,54 @@ Result<void> check_size(const char* flag, Size given, Size in_use) {
                   flag, given.width_px, given.height_px, in_use.width_px, in_use.height_px));
 }
 
+/// The option that compares something with the calibration in use; null if there is none.
+const char* what_compares(const Options& options) {
+  return options.check             ? "--check"
+         : options.correct         ? "--correct"
+         : !options.points.empty() ? "--points"
+                                   : nullptr;
+}
+
+Result<void> no_tracker(std::string_view asked, const config::Rig& rig) {
+  const auto* why = rig.pose.backend == "none"
+                        ? "the rig has no poses (pose.backend is none), so there is no tracker to "
+                          "measure"
+                        : "the poses of this rig come from its cameras, so there is no tracker to "
+                          "measure; if a camera has moved, measure `pair` (and `screen`) again";
+  return fail(Errc::bad_config, fmt::format("{}: {}", asked, why));
+}
+
+Result<void> no_second_camera(std::string_view asked) {
+  return fail(Errc::bad_config,
+              fmt::format("{}: the rig has no second camera; set camera2.backend", asked));
+}
+
 }  // namespace
+
+bool has_need_of(const config::Rig& rig, Step step) {
+  if (step == Step::lens2 || step == Step::pair) return config::has_second_view(rig);
+  return step != Step::tracker || (rig.pose.backend != "none" && rig.pose.backend != "stereo");
+}
+
+Result<void> check_steps(const Options& options, const config::Rig& rig) {
+  if (const auto* asked = what_compares(options);
+      asked && rig.calibration.empty() && rig.camera.backend != "twin")
+    return fail(Errc::bad_config,
+                fmt::format("{} needs a calibration, and the rig names none; measure one first: "
+                            "handcast calibrate {}",
+                            asked, options.rig_file.string()));
+  const bool has_tracker = has_need_of(rig, Step::tracker);
+  if (options.correct && !has_tracker) return no_tracker("--correct", rig);
+  if (options.reflector_mm > 0 && !has_tracker) return no_tracker("--reflector", rig);
+  if (options.camera2.width_px > 0 && !has_need_of(rig, Step::pair))
+    return no_second_camera("--camera2");
+  const auto missing =
+      std::ranges::find_if(options.steps, [&](Step step) { return !has_need_of(rig, step); });
+  if (missing == options.steps.end()) return {};
+  const auto word = config::word_of(*missing);
+  if (*missing == Step::tracker) return no_tracker(word, rig);
+  return no_second_camera(word);
+}
 
 Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
                                  const OwnDevices& own) {
@@ -161,34 +207,6 @@ Result<void> check_known(const Options& options, const RunningAs& running) {
                       {running.calibration.camera2->camera.width_px,
                        running.calibration.camera2->camera.height_px});
   return same;
-}
-
-std::vector<std::string> twin_scene(Step step, const Options& options, double camera_hz) {
-  // Whole pictures at 946 Hz take a core. 57 Hz keeps step with no usual rate of a camera.
-  std::vector<std::string> settings{"projector.rate_hz=57"};
-  if (step == Step::tracker) {
-    if (options.reflector_mm == 0) {
-      settings.emplace_back("twin.motion=builtin:show");
-      return settings;
-    }
-    settings.push_back(fmt::format("twin.image.reflector_mm={}", options.reflector_mm));
-    settings.insert(settings.end(), {"twin.motion=builtin:places", "twin.image.gain=80"});
-    return settings;
-  }
-  if (step == Step::light) {
-    settings.insert(settings.end(), {"twin.motion=builtin:still", "twin.hands=left"});
-    return settings;
-  }
-  settings.emplace_back("twin.prop.kind=board");
-  settings.push_back("twin.prop.board=" + calib::print_board_name(options.board));
-  // All patterns must be seen while it is still.
-  const double lit_s = std::clamp(6 + 240 / camera_hz, 8.0, 60.0);
-  settings.push_back(fmt::format("twin.prop.hold_s={:.1f}", step == Step::screen ? lit_s : 1));
-  if (step == Step::lens2) settings.emplace_back("twin.prop.views=second");
-  if (step == Step::pair) settings.emplace_back("twin.prop.views=both");
-  if (step == Step::screen)
-    settings.insert(settings.end(), {"twin.image.leak=1", "twin.image.gain=80"});
-  return settings;
 }
 
 }  // namespace handcast::calibrate

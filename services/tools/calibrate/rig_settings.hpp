@@ -10,6 +10,15 @@
 
 namespace handcast::calibrate {
 
+/// False for a step that measures what the rig does not have. Poses from two cameras are in the
+/// space of the first one: there is no tracker whose place could be wrong.
+bool has_need_of(const config::Rig& rig, Step step);
+
+/// Errors: bad_config (a step, --correct, --reflector or --camera2 needs a second camera or a
+/// tracker that the rig does not have; something is to be compared with the calibration, and the
+/// rig names none).
+Result<void> check_steps(const Options& options, const config::Rig& rig);
+
 /// How the rig runs while it is being calibrated.
 struct RunningAs {
   calib::Calibration calibration;     ///< that its services use meanwhile
@@ -33,9 +42,5 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
 /// size of --camera, --camera2 or --projector is not that of the calibration in use, and has no
 /// effect).
 Result<void> check_known(const Options& options, const RunningAs& running);
-
-/// The settings (for --set) with which the twin shows what a step needs, at a rate that leaves a
-/// small computer time for it. The board is held longer for a slow camera.
-std::vector<std::string> twin_scene(Step step, const Options& options, double camera_hz);
 
 }  // namespace handcast::calibrate

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/calibrate/session.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <iterator>
 
 #include "calib/opencv_file.hpp"
@@ -15,9 +13,9 @@
 #include "config/settings/files.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
-#include "services/tools/calibrate/check_steps.hpp"
 #include "services/tools/calibrate/kept_file.hpp"
 #include "services/tools/calibrate/pieces.hpp"
+#include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -32,28 +30,8 @@ constexpr std::array kSteps{Step::lens,   Step::lens2,   Step::pair,
 
 /// The sentence of a step in the calibration; null if the step measures no part of it.
 std::string* made_of(calib::Made& made, Step step) {
-  switch (step) {
-    case Step::lens:
-      return &made.lens;
-    case Step::screen:
-      return &made.screen;
-    case Step::tracker:
-      return &made.tracker;
-    case Step::lens2:
-      return &made.lens2;
-    case Step::pair:
-      return &made.pair;
-    case Step::light:
-      break;
-  }
-  return nullptr;
-}
-
-std::tm local_time() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  return local;
+  const auto member = entry_of(step).made;
+  return member ? &(made.*member) : nullptr;
 }
 
 /// The rig's own file; a new one next to the rig file if it has none.
@@ -247,7 +225,7 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
   for (const Step later : outdated_by(step)) forget(later);
   auto kept = keep_settings(step, outcome.settings);
   if (auto* made = made_of(draft_.made, step)) {
-    *made = fmt::format("{:%Y-%m-%d}: {}", local_time(), outcome.made);
+    *made = fmt::format("{}: {}", local_time("%Y-%m-%d"), outcome.made);
     if (kept) kept = write_whole(file(kPending), "the draft is not in its place yet\n");
   }
   // The measurement before its pictures, for which a disk may have no room.

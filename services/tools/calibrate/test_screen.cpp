@@ -54,6 +54,10 @@ void TestScreen::show(const std::function<void(std::uint8_t* levels)>& draw) {
   publish();
 }
 
+void TestScreen::show_level(std::uint8_t level) {
+  show([&](std::uint8_t* levels) { std::fill_n(levels, picture_.pixels().size(), level); });
+}
+
 void TestScreen::show_text(const std::vector<std::string>& lines) {
   if (lines == text_) return keep();
   draw_text(lines, picture_);

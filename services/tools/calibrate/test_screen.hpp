@@ -35,6 +35,8 @@ class TestScreen {
 
   /// Shows a picture: `draw` writes the levels, row by row without padding.
   void show(const std::function<void(std::uint8_t* levels)>& draw);
+  /// Shows one level everywhere.
+  void show_level(std::uint8_t level);
   /// Shows lines of text as draw_text() draws them.
   void show_text(const std::vector<std::string>& lines);
   /// Keeps the picture: call it at least twice a second.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/calibrate/tracker_step.hpp"
-
+// Where the tracker is.
 #include <fmt/format.h>
 
 #include <array>
@@ -14,6 +13,7 @@
 #include "services/tools/calibrate/harvest.hpp"
 #include "services/tools/calibrate/pictures.hpp"
 #include "services/tools/calibrate/reflector_fit.hpp"
+#include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -169,8 +169,9 @@ std::string made_of(const calib::TrackerFit& fit) {
       signed_text(ns_to_ms(fit.clock_offset_ns), 1));
 }
 
-}  // namespace
-
+/// By a hand that moves through the working volume: its joints by the tracker, its landmarks (or a
+/// reflector) in the camera's images. Sets draft.camera_from_tracker. Errors: bad_data (there was
+/// no hand, or the two do not fit), and those of the streams.
 Result<Outcome> measure_tracker(Desk& desk) {
   std::vector<glm::dvec2> seen_px;
   const auto found = fit(desk, seen_px);
@@ -196,6 +197,7 @@ Result<Outcome> measure_tracker(Desk& desk) {
 constexpr double kMovedAcross_mm = 2.5, kMovedAlong_mm = 6;
 /// @}
 
+/// Compares the calibration in use with what measure_tracker() finds.
 Result<Outcome> check_tracker(Desk& desk) {
   std::vector<glm::dvec2> seen_px;
   const auto found = fit(desk, seen_px);
@@ -220,5 +222,31 @@ Result<Outcome> check_tracker(Desk& desk) {
                             "step `tracker` again");
   return outcome;
 }
+
+std::vector<std::string> scene(const Options& options, double /*camera_hz*/) {
+  if (options.reflector_mm == 0) return {"twin.motion=builtin:show"};
+  return {fmt::format("twin.image.reflector_mm={}", options.reflector_mm),
+          "twin.motion=builtin:places", "twin.image.gain=80"};
+}
+
+const char* instruct(const Options& options) {
+  if (options.reflector_mm > 0)
+    return "Take the board away, and put the reflector on the very tip of an index finger. Expose "
+           "so briefly that only the reflector is white. Move the stretched finger through the "
+           "whole volume in which the show takes place, nearer and farther, too, and turn the "
+           "hand.";
+  return options.check ? "Move an open hand through the middle of the volume, nearer and farther."
+                       : "Take the board away. Move an open hand slowly through the whole volume "
+                         "in which the show takes place, nearer and farther, too.";
+}
+
+}  // namespace
+
+const StepEntry kTrackerStep{.step = Step::tracker,
+                             .made = &calib::Made::tracker,
+                             .scene = scene,
+                             .instruct = instruct,
+                             .measure = measure_tracker,
+                             .check = check_tracker};
 
 }  // namespace handcast::calibrate

@@ -29,7 +29,7 @@ static constexpr const char* kSkeleton = R"html(<!doctype html>
 
 std::string to_html(const Document& document) {
   return fill(kSkeleton, {{"title", escape(document.title)},
-                          {"style", kStyle + document.style},
+                          {"style", std::string(kStyle) + document.style},
                           {"facts", document.facts},
                           {"header", document.header},
                           {"body", document.body}});

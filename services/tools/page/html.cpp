@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/page/html.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
 namespace handcast::page {
 
 std::string escape(std::string_view text) {
@@ -47,30 +43,6 @@ std::string fill(std::string_view skeleton,
       filled += value->second;
     skeleton.remove_prefix(close + 2);
   }
-}
-
-std::string base64(std::span<const unsigned char> bytes) {
-  static constexpr std::string_view kDigits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t here = std::min<std::size_t>(bytes.size() - i, 3);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < here ? bytes[i + k] : 0u);
-    for (std::size_t digit = 0; digit < 4; ++digit)
-      text += digit <= here ? kDigits[bits >> (18 - 6 * digit) & 63] : '=';
-  }
-  return text;
-}
-
-std::string figure(std::optional<double> value, int digits) {
-  if (!value || !std::isfinite(*value)) return "–";
-  return fmt::format("{:.{}f}", *value, digits);
-}
-
-std::string missing(std::string_view sentence) {
-  return fmt::format("<p class=\"missing\">{}</p>\n", escape(sentence));
 }
 
 }  // namespace handcast::page

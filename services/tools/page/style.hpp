@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string_view>
 
 namespace handcast::page {
 
-/// The CSS shared by all pages: colours of the light and the dark colour scheme, text, tables.
-extern const char* const kStyle;
+/// The CSS of all pages, scripts/pages/templates/page.css: colours of the light and the dark colour
+/// scheme, text, tables.
+extern const std::string_view kStyle;
 
 }  // namespace handcast::page

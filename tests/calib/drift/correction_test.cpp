@@ -9,8 +9,8 @@
 namespace handcast::calib {
 namespace {
 
+using samples::HeldPlaces;
 using ::testing::HasSubstr;
-using testing::HeldPlaces;
 
 /// How far light lands beside its target, across the camera's axis, at some places: the largest.
 double light_error_mm(const glm::dmat4& truth, const glm::dmat4& believed) {

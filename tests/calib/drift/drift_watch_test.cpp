@@ -10,8 +10,8 @@
 namespace handcast::calib {
 namespace {
 
-using testing::HeldPlaces;
-using testing::Rig;
+using samples::HeldPlaces;
+using samples::Rig;
 
 Drift after(const Rig& rig, int places) {
   HeldPlaces hand(rig);

@@ -11,7 +11,7 @@
 
 /// A hand that is held still at one place after the other, in front of a rig whose tracker may have
 /// moved.
-namespace handcast::calib::testing {
+namespace handcast::calib::samples {
 
 struct Rig {
   unsigned seed = 1;
@@ -107,4 +107,4 @@ class HeldPlaces {
   std::int64_t before_ns_ = 0;
 };
 
-}  // namespace handcast::calib::testing
+}  // namespace handcast::calib::samples

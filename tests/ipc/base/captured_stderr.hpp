@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace handcast::testing {
+namespace handcast::samples {
 
 /// While the object exists, stderr is a pipe, and systemd seems to have connected it with its
 /// journal if `as_journal`.
@@ -46,4 +46,4 @@ class CapturedStderr {
   int before_, read_ = -1;
 };
 
-}  // namespace handcast::testing
+}  // namespace handcast::samples

@@ -15,7 +15,7 @@
 namespace handcast {
 namespace {
 
-using handcast::testing::CapturedStderr;
+using handcast::samples::CapturedStderr;
 using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::StartsWith;

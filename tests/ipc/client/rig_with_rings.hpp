@@ -14,8 +14,8 @@ namespace handcast::client {
 class RigWithRings : public supervisor::Control {
  protected:
   static ipc::Segment notes(const std::string& stream, int slots = 8) {
-    return ipc::testing::must(
-        ipc::Segment::create(ipc::RingSpec::of<ipc::testing::Note>(stream, slots, true)));
+    return ipc::samples::must(
+        ipc::Segment::create(ipc::RingSpec::of<ipc::samples::Note>(stream, slots, true)));
   }
   /// Lists `name` and gives the descriptor `fd`, which must stay open.
   using Rings = std::vector<std::pair<nlohmann::json, int>>;

@@ -11,11 +11,11 @@ namespace {
 
 using namespace std::chrono_literals;
 using ipc::Writer;
-using ipc::testing::again;
-using ipc::testing::must;
-using ipc::testing::Note;
-using ipc::testing::note;
-using ipc::testing::OtherNote;
+using ipc::samples::again;
+using ipc::samples::must;
+using ipc::samples::Note;
+using ipc::samples::note;
+using ipc::samples::OtherNote;
 using testing::AllOf;
 using testing::HasSubstr;
 

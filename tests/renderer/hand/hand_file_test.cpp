@@ -15,7 +15,7 @@
 namespace handcast::renderer {
 namespace {
 
-using namespace testing;
+using namespace samples;
 using nlohmann::json;
 using ::testing::HasSubstr;
 

@@ -188,8 +188,8 @@ Drawn drawn(float true_deg, float reported_deg, const config::Skin& skin) {
   const auto calibration = rig_above_hand();
   const auto pose_with = [](float bent_deg) {
     const std::array<float, 4> finger{0, bent_deg, bent_deg - 5, 20};
-    const testing::Pose bent{"", {}, {finger, finger, finger, finger}};
-    return pose_of(Side::left, testing::posed(*load_hand_or_default({}, Side::left), bent));
+    const samples::Pose bent{"", {}, {finger, finger, finger, finger}};
+    return pose_of(Side::left, samples::posed(*load_hand_or_default({}, Side::left), bent));
   };
   config::Cascade settings;
   settings.ladder.rung = config::RungChoice::landmarks;

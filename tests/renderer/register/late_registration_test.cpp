@@ -39,8 +39,8 @@ class Scene {
         track_.push(now_ns_, now_ns_ - kAge_ns, pose_at(now_ns_ - kAge_ns));
       const auto predicted = track_.predict(now_ns_, now_ns_ + kLeg_ns);
       if (!predicted) continue;
-      tracker_ = predicted->landmarks;
-      const LateRegistration::Hand hand{Side::left, &track_, predicted->landmarks, {}};
+      tracker_ = predicted->posed.landmarks;
+      const LateRegistration::Hand hand{Side::left, &track_, predicted->posed.landmarks, {}};
       if (now_ns_ % kFrame_ns == 0 && now_ns_ > now_ns - 30 * kMs)
         look(now_ns_ - kFrame_ns, hand, now_ns_ > now_ns - 12 * kMs ? seen : nullptr);
       corrected = late_.correct(hand, now_ns_ + kLeg_ns);

@@ -14,7 +14,7 @@
 namespace handcast::renderer {
 namespace {
 
-using namespace testing;
+using namespace samples;
 
 constexpr std::int64_t kSample_ns = 9'000'000;
 constexpr int kWrist = 1, kIndexBase = 6, kIndexKnuckle = 7, kIndexMiddle = 8, kIndexTip = 10;

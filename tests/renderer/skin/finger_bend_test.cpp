@@ -17,19 +17,19 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr testing::Pose kTrue{
+constexpr samples::Pose kTrue{
     "true",
     {10, 10, 0, 25, 35},
     {{{0, 50, 50, 30}, {0, 55, 50, 30}, {0, 55, 55, 30}, {0, 50, 50, 30}}}};
-constexpr testing::Pose kReported{
+constexpr samples::Pose kReported{
     "reported",
     {10, 10, 0, 15, 20},
     {{{0, 38, 40, 22}, {0, 43, 40, 22}, {0, 43, 45, 22}, {0, 38, 40, 22}}}};
 
 class FingerBend : public ::testing::TestWithParam<Side> {
  protected:
-  msg::HandPose pose(const testing::Pose& of) const {
-    return pose_of(GetParam(), testing::posed(mesh_, of), {0, 0.05f, 0});
+  msg::HandPose pose(const samples::Pose& of) const {
+    return pose_of(GetParam(), samples::posed(mesh_, of), {0, 0.05f, 0});
   }
   LandmarkPoints seen(const msg::HandPose& pose) const {
     return project_landmarks(calibration_, pose).value();

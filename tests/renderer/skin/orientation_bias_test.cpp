@@ -18,7 +18,7 @@ namespace {
 constexpr int kViews = 40;
 constexpr std::int64_t kBetween_ns = 100'000'000;
 
-struct View {
+struct SeenHand {
   msg::HandPose reported;
   msg::HandLandmarks seen;
 };
@@ -43,7 +43,7 @@ class OrientationBiasTest : public testing::Test {
 
   /// A hand tilted by up to `tilt_rad`; the tracker turns it by `wrong_rad` about the camera's
   /// axes.
-  View view(double tilt_rad, glm::vec3 wrong_rad, double noise_px = 0) {
+  SeenHand view(double tilt_rad, glm::vec3 wrong_rad, double noise_px = 0) {
     const glm::mat4 back_to_camera(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
     const glm::mat4 tilt =
         glm::rotate(glm::rotate(glm::mat4(1), float(normal(tilt_rad)), {1, 0, 0}),
@@ -52,7 +52,7 @@ class OrientationBiasTest : public testing::Test {
     const float angle = glm::length(wrong_rad);
     const glm::mat4 wrong =
         angle > 0 ? glm::rotate(glm::mat4(1), angle, wrong_rad / angle) : glm::mat4(1);
-    View both{posed(there * wrong * tilt * back_to_camera), {}};
+    SeenHand both{posed(there * wrong * tilt * back_to_camera), {}};
     const auto truth =
         project_landmarks(calibration_, posed(there * tilt * back_to_camera)).value();
     for (std::size_t i = 0; i < truth.size(); ++i)
@@ -64,7 +64,7 @@ class OrientationBiasTest : public testing::Test {
   OrientationBias learned(double tilt_rad, glm::vec3 wrong_rad, double noise_px = 0) {
     OrientationBias turn(calibration_);
     for (int i = 0; i < kViews; ++i, time_ns_ += kBetween_ns) {
-      const View both = view(tilt_rad, wrong_rad, noise_px);
+      const SeenHand both = view(tilt_rad, wrong_rad, noise_px);
       turn.learn(time_ns_, both.reported, both.seen);
     }
     return turn;
@@ -76,7 +76,7 @@ TEST_F(OrientationBiasTest, LearnsATurnAndUndoesIt) {
   const OrientationBias turn = learned(0.3, wrong);
   EXPECT_NEAR(turn.angle_rad().x, -wrong.x, 0.012);
   EXPECT_NEAR(turn.angle_rad().y, -wrong.y, 0.012);
-  const View both = view(0.3, wrong);
+  const SeenHand both = view(0.3, wrong);
   const auto joints_px = project_landmarks(calibration_, turn.turned(both.reported)).value(),
              before_px = project_landmarks(calibration_, both.reported).value();
   const auto miss = [&](const LandmarkPoints& points, std::size_t i) {
@@ -100,7 +100,7 @@ TEST_F(OrientationBiasTest, LearnsItFromNoisyLandmarks) {
 TEST_F(OrientationBiasTest, AShiftAScaleAndARollAreNoTurn) {
   OrientationBias turn(calibration_);
   for (int i = 0; i < kViews; ++i, time_ns_ += kBetween_ns) {
-    View both = view(0.3, {0, 0, 0.05f});
+    SeenHand both = view(0.3, {0, 0, 0.05f});
     for (auto& point : both.seen.points) {
       point.x_px = 1.05f * point.x_px + 20;
       point.y_px = 1.05f * point.y_px - 30;
@@ -113,14 +113,14 @@ TEST_F(OrientationBiasTest, AShiftAScaleAndARollAreNoTurn) {
 TEST_F(OrientationBiasTest, ManyImagesOfOnePoseCountAsFew) {
   const glm::vec3 wrong(0.06f, 0, 0);
   OrientationBias many(calibration_), few(calibration_);
-  const View both = view(0, wrong);
+  const SeenHand both = view(0, wrong);
   for (int i = 0; i < 200; ++i) many.learn(time_ns_ + i * 1'000'000, both.reported, both.seen);
   few.learn(time_ns_, both.reported, both.seen);
   EXPECT_LT(std::abs(many.angle_rad().x), 2 * std::abs(few.angle_rad().x));
 }
 
 TEST_F(OrientationBiasTest, ALandmarkThatNoCameraSeesTeachesNothing) {
-  const View both = view(0.3, {0.06f, 0, 0});
+  const SeenHand both = view(0.3, {0.06f, 0, 0});
   const auto taught = [&](const auto& spoil) {
     OrientationBias turn(calibration_);
     auto seen = both.seen;
@@ -137,13 +137,13 @@ TEST_F(OrientationBiasTest, ALandmarkThatNoCameraSeesTeachesNothing) {
 TEST_F(OrientationBiasTest, NeverTurnsFarAndIgnoresWhatIsNotSeen) {
   OrientationBias turn(calibration_);
   for (int i = 0; i < kViews; ++i, time_ns_ += kBetween_ns) {
-    const View both = view(0.3, {0.9f, 0, 0});
+    const SeenHand both = view(0.3, {0.9f, 0, 0});
     turn.learn(time_ns_, both.reported, both.seen);
   }
   EXPECT_LT(glm::length(turn.angle_rad()), 0.21);
 
   OrientationBias blind(calibration_);
-  View both = view(0.3, {0.1f, 0, 0});
+  SeenHand both = view(0.3, {0.1f, 0, 0});
   for (auto& point : both.seen.points) point.confidence = 0;
   blind.learn(time_ns_, both.reported, both.seen);
   both.reported.joints[1].position_m[2] = -1;  // the wrist is behind the camera

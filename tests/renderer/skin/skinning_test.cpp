@@ -9,7 +9,7 @@
 namespace handcast::renderer {
 namespace {
 
-using namespace testing;
+using namespace samples;
 
 struct Skinned {
   std::vector<glm::vec3> positions, normals;

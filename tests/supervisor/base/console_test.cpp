@@ -9,7 +9,7 @@ namespace handcast::supervisor {
 namespace {
 
 std::string printed(bool to_journal, std::string_view line) {
-  handcast::testing::CapturedStderr captured(to_journal);
+  handcast::samples::CapturedStderr captured(to_journal);
   print_line(line);
   return captured.text();
 }

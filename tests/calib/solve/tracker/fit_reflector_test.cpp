@@ -11,14 +11,14 @@
 namespace handcast::calib {
 namespace {
 
+using samples::World;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::World;
 
 constexpr std::array<std::size_t, 5> kTips{4, 8, 12, 16, 20};
 
-TrackedTips tips_of(std::string_view side, const testing::Recording& recording) {
+TrackedTips tips_of(std::string_view side, const samples::Recording& recording) {
   TrackedTips tips{side, {}};
   for (const auto& sample : recording.samples) {
     TrackerSample of_tips{sample.time_ns, {}};
@@ -29,7 +29,7 @@ TrackedTips tips_of(std::string_view side, const testing::Recording& recording) 
 }
 
 /// Sightings of a reflector on this finger between two times.
-std::vector<Sighting> reflector_on(const testing::Recording& recording, std::size_t finger,
+std::vector<Sighting> reflector_on(const samples::Recording& recording, std::size_t finger,
                                    double from_s = 0, double to_s = 1000) {
   std::vector<Sighting> sightings;
   const auto begin_ns = recording.sightings.front().time_ns;
@@ -49,18 +49,18 @@ World exact(unsigned seed) {
 }
 
 TEST(FitReflector, FindsPoseAndOffset) {
-  const auto truth = testing::record(exact(1));
+  const auto truth = samples::record(exact(1));
   const std::vector hands{tips_of("left", truth)};
   const auto found = fit_reflector(truth.camera, hands, reflector_on(truth, 1));
   ASSERT_TRUE(found) << found.error().what;
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 2);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 2);
   EXPECT_NEAR(static_cast<double>(found->clock_offset_ns) * 1e-6, 5, 1);
   EXPECT_NE(found->quality, Quality::poor);
   EXPECT_THAT(found->findings, Not(Contains(HasSubstr("wrong hand"))));
 }
 
 TEST(FitReflector, OnAnotherFingerItIsNamedAndPoor) {
-  const auto truth = testing::record(exact(2));
+  const auto truth = samples::record(exact(2));
   const std::vector hands{tips_of("left", truth)};
   const auto found = fit_reflector(truth.camera, hands, reflector_on(truth, 3));
   if (found) {
@@ -72,16 +72,16 @@ TEST(FitReflector, OnAnotherFingerItIsNamedAndPoor) {
 }
 
 TEST(FitReflector, OfTwoHandsTheRightOneIsTaken) {
-  const auto truth = testing::record(exact(3));
-  const auto other = testing::record(exact(33));  // moves otherwise at the same time
+  const auto truth = samples::record(exact(3));
+  const auto other = samples::record(exact(33));  // moves otherwise at the same time
   const std::vector hands{tips_of("left", other), tips_of("right", truth)};
   const auto found = fit_reflector(truth.camera, hands, reflector_on(truth, 1));
   ASSERT_TRUE(found) << found.error().what;
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 2);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 2);
 }
 
 TEST(FitReflector, OnTheWrongHandForAWhileItIsNamed) {
-  const auto truth = testing::record(exact(4));
+  const auto truth = samples::record(exact(4));
   auto other = truth;  // 12 cm beside the first hand
   const auto aside = glm::dmat3(glm::inverse(truth.camera_from_tracker)) * glm::dvec3(0.12, 0, 0);
   for (auto& sample : other.samples)
@@ -99,11 +99,11 @@ TEST(FitReflector, OnTheWrongHandForAWhileItIsNamed) {
   const auto found = fit_reflector(truth.camera, hands, sightings);
   ASSERT_TRUE(found) << found.error().what;
   EXPECT_THAT(found->findings, Contains(HasSubstr("on the wrong hand for a while")));
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 3);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 3);
 }
 
 TEST(FitReflector, WithoutAHandOrAReflectorItIsAnError) {
-  const auto truth = testing::record(exact(5));
+  const auto truth = samples::record(exact(5));
   const std::vector<TrackedTips> none{{"left", {}}, {"right", {}}};
   const auto no_hand = fit_reflector(truth.camera, none, reflector_on(truth, 1));
   ASSERT_FALSE(no_hand);

@@ -14,35 +14,35 @@
 namespace handcast::calib {
 namespace {
 
+using samples::World;
 using ::testing::AnyOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using testing::World;
 
-Result<TrackerFit> fit(const testing::Recording& r) {
+Result<TrackerFit> fit(const samples::Recording& r) {
   return fit_tracker(r.camera, r.samples, r.sightings);
 }
 
-double seconds_of(const testing::Recording& r, const Sighting& s) {
+double seconds_of(const samples::Recording& r, const Sighting& s) {
   return ns_to_seconds(s.time_ns - r.sightings.front().time_ns);
 }
 
 /// The light of the fit is where the fit expects it: within three standard deviations.
-void expect_honest(const testing::Recording& r, const TrackerFit& fit) {
+void expect_honest(const samples::Recording& r, const TrackerFit& fit) {
   for (const auto& place : fit.place_errors)
-    EXPECT_LT(testing::error_mm(r, fit, place.place_m), 3 * place.whole_mm + 0.1);
+    EXPECT_LT(samples::error_mm(r, fit, place.place_m), 3 * place.whole_mm + 0.1);
 }
 
 // Intervals and errors over 200 recordings: bench_calib_tracker.
 TEST(FitTracker, FindsPoseAndOffsetOfANoisyRecordingWithOutliers) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const World world{.seed = seed};
-    const auto truth = testing::record(world);
+    const auto truth = samples::record(world);
     const auto found = fit(truth);
     ASSERT_TRUE(found) << found.error().what;
-    EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 1.3);
-    const auto errors = testing::errors_of(truth, *found, world.offset_s);
+    EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 1.3);
+    const auto errors = samples::errors_of(truth, *found, world.offset_s);
     EXPECT_LT(std::hypot(errors[3], errors[4], errors[5]), 0.15);
     EXPECT_LT(std::abs(errors[6]), 1);
     EXPECT_NEAR(found->inlier_share, 0.8, 0.03);
@@ -53,17 +53,17 @@ TEST(FitTracker, FindsPoseAndOffsetOfANoisyRecordingWithOutliers) {
 
 TEST(FitTracker, WithoutNoiseTheAnswerIsExact) {
   const World world{.seconds = 8, .sighting_px = 0, .tracker_mm = 0, .bias_mm = 0, .outliers = 0};
-  const auto truth = testing::record(world);
+  const auto truth = samples::record(world);
   const auto found = fit(truth);
   ASSERT_TRUE(found) << found.error().what;
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 0.05);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 0.05);
   EXPECT_NEAR(static_cast<double>(found->clock_offset_ns) * 1e-6, 5, 0.05);
   EXPECT_GT(found->inlier_share, 0.95);
 }
 
 TEST(FitTracker, TheOffsetIsTheTrackersClockMinusTheCameras) {
   for (const double offset_s : {-0.09, 0.07}) {
-    const auto truth = testing::record(
+    const auto truth = samples::record(
         {.seconds = 8, .offset_s = offset_s, .reach_m = {0.12, 0.12, 0.11}, .turn_rad = 1.2});
     const auto found = fit(truth);
     ASSERT_TRUE(found) << found.error().what;
@@ -73,28 +73,28 @@ TEST(FitTracker, TheOffsetIsTheTrackersClockMinusTheCameras) {
 
 TEST(FitTracker, AReflectorOnOneFingerTipSuffices) {
   const World world{.seconds = 20, .only_index_tip = true};
-  const auto truth = testing::record(world);
+  const auto truth = samples::record(world);
   const auto found = fit(truth);
   ASSERT_TRUE(found) << found.error().what;
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 2.5);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 2.5);
   EXPECT_NEAR(static_cast<double>(found->clock_offset_ns) * 1e-6, 5, 2);
   expect_honest(truth, *found);
 }
 
 TEST(FitTracker, TheOrderOfTheInputDoesNotMatter) {
-  auto truth = testing::record({.seconds = 6});
+  auto truth = samples::record({.seconds = 6});
   const auto in_order = fit(truth);
   std::mt19937 random(3);
   std::ranges::shuffle(truth.samples, random);
   std::ranges::reverse(truth.sightings);
   const auto shuffled = fit(truth);
   ASSERT_TRUE(in_order && shuffled);
-  EXPECT_LT(testing::error_mm(truth, *shuffled, testing::kMiddle_m), 2);
+  EXPECT_LT(samples::error_mm(truth, *shuffled, samples::kMiddle_m), 2);
   EXPECT_NEAR(static_cast<double>(in_order->clock_offset_ns - shuffled->clock_offset_ns), 0, 1e5);
 }
 
 TEST(FitTracker, OnlyTheRatiosOfTheSigmasMatter) {
-  auto truth = testing::record({.seconds = 6});
+  auto truth = samples::record({.seconds = 6});
   const auto found = fit(truth);
   for (auto& s : truth.sightings) s.sigma_px = 0.05;
   const auto scaled = fit(truth);
@@ -104,28 +104,28 @@ TEST(FitTracker, OnlyTheRatiosOfTheSigmasMatter) {
 }
 
 TEST(FitTracker, SightingsWithALargeSigmaCountLess) {
-  auto truth = testing::record({.seconds = 8, .bias_mm = 0, .outliers = 0});
+  auto truth = samples::record({.seconds = 8, .bias_mm = 0, .outliers = 0});
   for (std::size_t i = 0; i < truth.sightings.size(); i += 3) {
     truth.sightings[i].undistorted_px += glm::dvec2(8, 0);
     truth.sightings[i].sigma_px = 20;
   }
   const auto found = fit(truth);
   ASSERT_TRUE(found) << found.error().what;
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 0.3);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 0.3);
 }
 
 TEST(FitTracker, HalfOutliersAreTolerated) {
-  const auto truth = testing::record({.outliers = 0.5});
+  const auto truth = samples::record({.outliers = 0.5});
   const auto found = fit(truth);
   ASSERT_TRUE(found) << found.error().what;
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 1.5);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 1.5);
   EXPECT_NEAR(found->inlier_share, 0.5, 0.05);
   EXPECT_THAT(found->findings, Contains(HasSubstr("of the sightings fit; likely reasons")));
   EXPECT_EQ(found->quality, Quality::usable);
 }
 
 TEST(FitTracker, GarbageInTheFirstSecondIsLeftOutAndNamed) {
-  auto truth = testing::record({.seconds = 10});
+  auto truth = samples::record({.seconds = 10});
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(0, 500);
   for (auto& s : truth.sightings)
@@ -133,12 +133,12 @@ TEST(FitTracker, GarbageInTheFirstSecondIsLeftOutAndNamed) {
   const auto found = fit(truth);
   ASSERT_TRUE(found) << found.error().what;
   EXPECT_THAT(found->findings, Contains(HasSubstr("The first 1.0 s do not fit")));
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 2);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 2);
 }
 
 TEST(FitTracker, AWrongFingerIsNamedWithItsTime) {
   constexpr int kIndexTip = 8, kMiddleTip = 12;
-  auto truth = testing::record({.seconds = 12, .outliers = 0.05});
+  auto truth = samples::record({.seconds = 12, .outliers = 0.05});
   // Only the index tip is sighted; from 4 to 7 s, it is the middle finger.
   std::erase_if(truth.sightings, [&](const Sighting& s) {
     const double at_s = seconds_of(truth, s);
@@ -149,12 +149,12 @@ TEST(FitTracker, AWrongFingerIsNamedWithItsTime) {
   ASSERT_TRUE(found) << found.error().what;
   EXPECT_THAT(found->findings, Contains(AllOf(HasSubstr("Between 4."), HasSubstr("and 6.9 s"),
                                               HasSubstr("of point 8 fit point 12"))));
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 4);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 4);
   expect_honest(truth, *found);
 }
 
 TEST(FitTracker, AMirroredImageIsNamed) {
-  auto truth = testing::record({.seconds = 6});
+  auto truth = samples::record({.seconds = 6});
   for (auto& s : truth.sightings) s.undistorted_px.x = 2 * truth.camera.cx_px - s.undistorted_px.x;
   const auto found = fit(truth);
   if (found) {
@@ -166,7 +166,7 @@ TEST(FitTracker, AMirroredImageIsNamed) {
 }
 
 TEST(FitTracker, AHandOfTheOtherSideIsNamed) {
-  auto truth = testing::record({.seconds = 6});
+  auto truth = samples::record({.seconds = 6});
   for (auto& sample : truth.samples) {
     auto& hand = sample.points_m;
     const auto across = glm::normalize(hand[5] - hand[17]), middle = (hand[9] + hand[13]) / 2.;
@@ -182,7 +182,7 @@ TEST(FitTracker, AHandOfTheOtherSideIsNamed) {
 }
 
 TEST(FitTracker, AnOffsetBeyondTheSearchIsPoorAndNamed) {
-  const auto truth = testing::record({.seconds = 10, .offset_s = 0.13});
+  const auto truth = samples::record({.seconds = 10, .offset_s = 0.13});
   const auto found = fit(truth);
   ASSERT_TRUE(found) << found.error().what;
   EXPECT_EQ(found->quality, Quality::poor);
@@ -190,7 +190,7 @@ TEST(FitTracker, AnOffsetBeyondTheSearchIsPoorAndNamed) {
 }
 
 TEST(FitTracker, ASmallVolumeIsPoorWithAdvice) {
-  const auto truth = testing::record({.reach_m = {0.02, 0.02, 0.01},
+  const auto truth = samples::record({.reach_m = {0.02, 0.02, 0.01},
                                       .turn_rad = 0.02,
                                       .fingers_bend = false,
                                       .only_index_tip = true});
@@ -202,7 +202,7 @@ TEST(FitTracker, ASmallVolumeIsPoorWithAdvice) {
 }
 
 TEST(FitTracker, ASmallPartOfTheImageIsPoorHoweverWellItFits) {
-  const auto truth = testing::record({.reach_m = {0.035, 0.015, 0.035},
+  const auto truth = samples::record({.reach_m = {0.035, 0.015, 0.035},
                                       .turn_rad = 0,
                                       .fingers_bend = false,
                                       .only_index_tip = true});
@@ -214,7 +214,7 @@ TEST(FitTracker, ASmallPartOfTheImageIsPoorHoweverWellItFits) {
 }
 
 TEST(FitTracker, PointsOnAPlaneAreNamed) {
-  const auto truth = testing::record(
+  const auto truth = samples::record(
       {.reach_m = {0.1, 0.1, 0}, .turn_rad = 0, .fingers_bend = false, .only_index_tip = true});
   auto flat = truth;
   const auto found = fit(flat);
@@ -226,7 +226,7 @@ TEST(FitTracker, PointsOnAPlaneAreNamed) {
 
 // A small plane looks the same from two sides.
 TEST(FitTracker, ASecondPoseThatFitsAsWellIsNamed) {
-  const auto truth = testing::record({.seconds = 10,
+  const auto truth = samples::record({.seconds = 10,
                                       .reach_m = {0.012, 0, 0.012},
                                       .turn_rad = 0,
                                       .fingers_bend = false,
@@ -237,7 +237,7 @@ TEST(FitTracker, ASecondPoseThatFitsAsWellIsNamed) {
   EXPECT_THAT(found->findings.front(), HasSubstr("A second pose"));
 }
 
-void expect_error(const testing::Recording& r, const std::string& words) {
+void expect_error(const samples::Recording& r, const std::string& words) {
   const auto found = fit(r);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, Errc::bad_data);
@@ -245,19 +245,19 @@ void expect_error(const testing::Recording& r, const std::string& words) {
 }
 
 TEST(FitTracker, AHandThatStandsStillIsAnError) {
-  expect_error(testing::record({.seconds = 5, .reach_m = {0, 0, 0}, .turn_rad = 0}),
+  expect_error(samples::record({.seconds = 5, .reach_m = {0, 0, 0}, .turn_rad = 0}),
                "hardly moves");
 }
 
 TEST(FitTracker, PointsOnALineAreAnError) {
-  auto truth = testing::record({.seconds = 5, .only_index_tip = true});
+  auto truth = samples::record({.seconds = 5, .only_index_tip = true});
   for (std::size_t i = 0; i < truth.samples.size(); ++i)
     truth.samples[i].points_m = {{0.1 * std::sin(0.02 * static_cast<double>(i)), 0.2, 0.3}};
   expect_error(truth, "on a line");
 }
 
 TEST(FitTracker, UnrelatedSightingsAreAnError) {
-  auto truth = testing::record({.seconds = 6});
+  auto truth = samples::record({.seconds = 6});
   std::mt19937 random(1);
   std::uniform_real_distribution<double> any(0, 500);
   for (auto& s : truth.sightings) s.undistorted_px = {any(random), any(random)};
@@ -265,13 +265,13 @@ TEST(FitTracker, UnrelatedSightingsAreAnError) {
 }
 
 TEST(FitTracker, TimesThatDoNotMeetAreAnError) {
-  auto truth = testing::record({.seconds = 5});
+  auto truth = samples::record({.seconds = 5});
   for (auto& s : truth.sightings) s.time_ns += 3'600'000'000'000;
   expect_error(truth, "no common time");
 }
 
 TEST(FitTracker, ClocksThatStandStillAreAnError) {
-  const auto truth = testing::record({.seconds = 5});
+  const auto truth = samples::record({.seconds = 5});
   auto still = truth;
   for (auto& sample : still.samples) sample.time_ns = 7;
   expect_error(still, "tracker's clock stands still");
@@ -281,7 +281,7 @@ TEST(FitTracker, ClocksThatStandStillAreAnError) {
 }
 
 TEST(FitTracker, TooLittleDataIsAnError) {
-  const auto truth = testing::record({.seconds = 5});
+  const auto truth = samples::record({.seconds = 5});
   auto little = truth;
   little.sightings.resize(3);
   expect_error(little, "3 usable sightings in common");
@@ -290,11 +290,11 @@ TEST(FitTracker, TooLittleDataIsAnError) {
   little = truth;
   little.samples.clear();
   expect_error(little, "no samples");
-  expect_error(testing::record({.seconds = 1}), "in common");
+  expect_error(samples::record({.seconds = 1}), "in common");
 }
 
 TEST(FitTracker, DataThatContradictsItselfIsAnError) {
-  const auto truth = testing::record({.seconds = 5});
+  const auto truth = samples::record({.seconds = 5});
   auto wrong = truth;
   wrong.samples[7].points_m.pop_back();
   expect_error(wrong, "Sample 7 of the tracker has 20 points");
@@ -308,7 +308,7 @@ TEST(FitTracker, DataThatContradictsItselfIsAnError) {
 
 TEST(FitTracker, NumbersThatAreNotFiniteAreLeftOutAndCounted) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  auto truth = testing::record({.seconds = 8});
+  auto truth = samples::record({.seconds = 8});
   truth.sightings[10].undistorted_px.x = kNan;
   truth.sightings[11].sigma_px = 0;
   truth.sightings[12].sigma_px = kNan;
@@ -316,7 +316,7 @@ TEST(FitTracker, NumbersThatAreNotFiniteAreLeftOutAndCounted) {
   truth.samples[101].points_m[4].x = std::numeric_limits<double>::infinity();
   const auto found = fit(truth);
   ASSERT_TRUE(found) << found.error().what;
-  EXPECT_LT(testing::error_mm(truth, *found, testing::kMiddle_m), 2);
+  EXPECT_LT(samples::error_mm(truth, *found, samples::kMiddle_m), 2);
   EXPECT_THAT(found->findings, Contains(HasSubstr("3 sightings had numbers")));
   EXPECT_THAT(found->findings, Contains(HasSubstr("2 samples of the tracker had numbers")));
   for (auto& sample : truth.samples) sample.points_m[0].x = kNan;

@@ -13,7 +13,7 @@
 
 /// A hand that moves through the working volume, seen by a tracker and a camera whose poses and
 /// clocks are known.
-namespace handcast::calib::testing {
+namespace handcast::calib::samples {
 
 struct World {
   unsigned seed = 1;
@@ -165,4 +165,4 @@ class MovingHand {
 
 inline Recording record(const World& world) { return MovingHand(world).record(); }
 
-}  // namespace handcast::calib::testing
+}  // namespace handcast::calib::samples

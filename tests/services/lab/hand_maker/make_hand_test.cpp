@@ -11,7 +11,7 @@
 namespace handcast::renderer {
 namespace {
 
-using namespace testing;
+using namespace samples;
 
 class MadeHand : public ::testing::TestWithParam<Side> {
  protected:

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-namespace handcast::renderer::testing {
+namespace handcast::renderer::samples {
 
 const HandMesh& mean_hand(Side side) {
   static const HandMesh left = make_hand(HandShape::mean(), Side::left),
@@ -181,4 +181,4 @@ double percentile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * (sorted.size() - 1))];
 }
 
-}  // namespace handcast::renderer::testing
+}  // namespace handcast::renderer::samples

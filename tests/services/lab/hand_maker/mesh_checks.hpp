@@ -4,7 +4,7 @@
 
 #include "services/lab/hand_maker/hand_shape.hpp"
 
-namespace handcast::renderer::testing {
+namespace handcast::renderer::samples {
 
 /// The mean hands, made once per test program.
 const HandMesh& mean_hand(Side side);
@@ -30,4 +30,4 @@ std::vector<double> stretch_ratios(const HandMesh& hand);
 int uv_overlaps(const HandMesh& hand);
 double percentile(const std::vector<double>& sorted, double share);
 
-}  // namespace handcast::renderer::testing
+}  // namespace handcast::renderer::samples

@@ -11,7 +11,7 @@
 
 // render_hands FOLDER [FILE.glb]: pictures of the hand in five poses, of its wires and of its
 // texture layout, to be looked at.
-namespace handcast::renderer::testing {
+namespace handcast::renderer::samples {
 namespace {
 
 constexpr int kSize = 700;
@@ -131,7 +131,7 @@ void draw_layout(const HandMesh& hand, const std::filesystem::path& folder) {
 }
 
 }  // namespace
-}  // namespace handcast::renderer::testing
+}  // namespace handcast::renderer::samples
 
 int main(int argc, char** argv) {
   using namespace handcast::renderer;
@@ -139,6 +139,6 @@ int main(int argc, char** argv) {
   std::filesystem::create_directories(argv[1]);
   const auto hand = load_hand_or_default(argc > 2 ? argv[2] : "", Side::left);
   if (!hand) return std::fprintf(stderr, "%s\n", hand.error().what.c_str()), 1;
-  testing::draw_poses(*hand, argv[1]);
-  testing::draw_layout(*hand, argv[1]);
+  samples::draw_poses(*hand, argv[1]);
+  samples::draw_layout(*hand, argv[1]);
 }

@@ -82,9 +82,9 @@ TEST_F(HandOver, WhatWasOnlyPrintedIsAppliedLater) {
 TEST_F(HandOver, SettingsStayUntilTheyCouldBeApplied) {
   measure(Step::screen, 1200, {kLatency});
   const auto rig_before = rig();
-  fs::create_directory(measured_file());
   options_.apply = true;
   auto session = open();
+  fs::create_directory(measured_file());
   testing::internal::CaptureStdout();
   EXPECT_FALSE(hand_over(options_, rig_before, calib::reference_rig(), session));
   EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("  projector.latency_ms = 10.2"));

@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "services/tools/calibrate/steps.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::calibrate {
@@ -12,6 +13,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 class RigSettings : public testing::Test {
  protected:
@@ -118,16 +120,18 @@ TEST_F(RigSettings, ACalibrationOfAnotherSecondCameraIsRefused) {
 }
 
 TEST_F(RigSettings, TheTwinShowsWhatAStepNeeds) {
-  const auto settings = twin_scene(Step::screen, Options{}, 120);
+  const auto scene_of = [](Step step, double camera_hz) {
+    return entry_of(step).scene(Options{}, camera_hz);
+  };
+  const auto settings = scene_of(Step::screen, 120);
   EXPECT_THAT(settings, Contains("twin.prop.board=charuco:11x8:20"));
   EXPECT_THAT(settings, Contains("twin.image.leak=1"));
   EXPECT_THAT(settings, Contains("twin.prop.hold_s=8.0"));
-  EXPECT_THAT(twin_scene(Step::screen, Options{}, 16), Contains("twin.prop.hold_s=21.0"))
+  EXPECT_THAT(scene_of(Step::screen, 16), Contains("twin.prop.hold_s=21.0"))
       << "a slow camera needs longer for all patterns";
-  EXPECT_THAT(twin_scene(Step::pair, Options{}, 120), Contains("twin.prop.views=both"));
-  EXPECT_THAT(twin_scene(Step::lens2, Options{}, 120), Contains("twin.prop.views=second"));
-  EXPECT_THAT(twin_scene(Step::tracker, Options{}, 120),
-              testing::Not(Contains(HasSubstr("twin.prop"))));
+  EXPECT_THAT(scene_of(Step::pair, 120), Contains("twin.prop.views=both"));
+  EXPECT_THAT(scene_of(Step::lens2, 120), Contains("twin.prop.views=second"));
+  EXPECT_THAT(scene_of(Step::tracker, 120), Not(Contains(HasSubstr("twin.prop"))));
 }
 
 TEST_F(RigSettings, NothingIsComparedWithAGuessedSecondCamera) {
@@ -179,6 +183,55 @@ TEST_F(RigSettings, ASizeThatWouldHaveNoEffectIsRefused) {
   EXPECT_THAT(check_known(options_, running).error().what,
               HasSubstr("--camera 640x480 has no effect: the calibration that the rig names has "
                         "720x540"));
+}
+
+std::string refusal_of(const Options& options, const std::string& pose_backend) {
+  config::Rig rig;
+  rig.pose.backend = pose_backend;
+  const auto checked = check_steps(options, rig);
+  return checked ? "" : checked.error().what;
+}
+
+TEST(CheckSteps, ATrackerThatTheRigHasNotIsNotMeasured) {
+  Options tracker, correct, reflector;
+  tracker.steps = {Step::screen, Step::tracker};
+  correct.correct = true;
+  reflector.reflector_mm = 8;
+  for (const auto& [options, asked] :
+       {std::pair(tracker, "tracker: "), {correct, "--correct: "}, {reflector, "--reflector: "}}) {
+    EXPECT_THAT(refusal_of(options, "stereo"), HasSubstr(asked));
+    EXPECT_THAT(refusal_of(options, "stereo"), HasSubstr("measure `pair` (and `screen`) again"));
+    EXPECT_THAT(refusal_of(options, "none"), HasSubstr("no tracker to measure"));
+    EXPECT_THAT(refusal_of(options, "none"), Not(HasSubstr("pair")));
+    EXPECT_EQ(refusal_of(options, "twin"), "");
+  }
+}
+
+TEST(CheckSteps, ASecondCameraThatTheRigHasNotIsNotMeasured) {
+  Options options;
+  options.steps = {Step::pair};
+  EXPECT_THAT(refusal_of(options, "twin"), HasSubstr("pair: the rig has no second camera"));
+  EXPECT_EQ(refusal_of(options, "stereo"), "");
+  Options size;
+  size.camera2 = {640, 480};
+  EXPECT_THAT(refusal_of(size, "twin"), HasSubstr("--camera2: the rig has no second camera"));
+  EXPECT_EQ(refusal_of(size, "stereo"), "");
+}
+
+TEST(CheckSteps, NothingIsComparedWithoutACalibration) {
+  config::Rig rig;
+  rig.camera.backend = "v4l2";
+  Options options;
+  options.rig_file = "rig.toml";
+  EXPECT_TRUE(check_steps(options, rig));
+  options.check = true;
+  const auto checked = check_steps(options, rig);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error().what,
+              HasSubstr("--check needs a calibration, and the rig names none; "
+                        "measure one first: handcast calibrate rig.toml"));
+  rig.calibration = "own.toml";
+  EXPECT_TRUE(check_steps(options, rig));
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The verbs that make pages, and their options."""
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Option:
+    """An option with a value, or the list of files that a verb reads."""
+    name: str              # "--out", or the name of the list
+    sentence: str          # for --help
+    value: str             # name of its value in --help
+    default: str = None    # None: there is none
+    is_required: bool = False
+    is_list: bool = False
+
+    @property
+    def key(self):
+        """The name of its value among all values."""
+        return self.name.removeprefix("--")
+
+
+@dataclass(frozen=True)
+class Verb:
+    """A program of a page."""
+    sentence: str  # what it does, for --help
+    module: str    # has run(values, complain), which returns the exit code
+    options: tuple
+    footer: str = ""
+
+
+CHART_FOOTER = """\
+A: speed against accuracy. B: where methods fail, and the failure atlas. C: error against degrees of freedom and time.
+The charts need the results of these plans in config/sweeps: A and C ladder.toml, and times.toml for frame times; B stress.toml and
+failures.toml. scripts/charts runs all of them."""
+
+VERBS = {
+    "chart": Verb(
+        "Draws the results of sweeps: a self-contained page, the charts as SVG, and the numbers behind them as CSV.",
+        "pages.chart.write",
+        (Option("results", "Files of `handcast sweep`", "RESULTS.csv", is_required=True, is_list=True),
+         Option("--out", "Folder for charts.html, *.svg and *.csv (default: out/charts)", "DIR", "out/charts"),
+         Option("--title", "Heading of the page", "TEXT", "handcast: speed against accuracy")),
+        CHART_FOOTER),
+    "report": Verb(
+        "Makes report.html, metrics.json and preview.mp4 from the results of a demonstration.",
+        "pages.report.write",
+        (Option("--out", "Folder with baseline.json, paper.json, twin.json, live.json, observer.json and frames/; the report is "
+                         "written to it (required)", "DIR", is_required=True),
+         Option("--title", "Heading of the page", "TEXT", "handcast: light that stays on moving hands"))),
+}
