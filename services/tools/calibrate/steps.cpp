@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
 /// In the order in which they are measured.
-constexpr std::array kSteps{&kLensStep,   &kSecondLensStep, &kPairStep,
+constexpr std::array kStepNames{&kLensStep,   &kSecondLensStep, &kPairStep,
                             &kScreenStep, &kTrackerStep,    &kLightStep};
 /// In the order in which they are checked: a hand first, then the board.
 constexpr std::array kChecks{&kTrackerStep, &kPairStep, &kScreenStep};
@@ -121,12 +121,12 @@ Result<int> check_all(const Options& options, const config::Rig& rig, const Runn
 
 }  // namespace
 
-const StepEntry& entry_of(Step step) { return **std::ranges::find(kSteps, step, &StepEntry::step); }
+const StepEntry& entry_of(Step step) { return **std::ranges::find(kStepNames, step, &StepEntry::step); }
 
 std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const Session& session) {
   std::vector<Step> steps = options.steps;
   if (!steps.empty()) return steps;
-  for (const auto* entry : kSteps)
+  for (const auto* entry : kStepNames)
     if (has_need_of(rig, entry->step) && !session.is_done(entry->step))
       steps.push_back(entry->step);
   return steps;
