@@ -10,7 +10,7 @@
 namespace handcast::projector {
 namespace {
 
-constexpr std::int64_t kPlanMs = 1'000'000, kStart_ns = 1'000 * kPlanMs;
+constexpr std::int64_t kPlanMs = 1'000'000, kPlanStart_ns = 1'000 * kPlanMs;
 
 /// 8 sub-frames at 800 Hz: an output frame takes 10 ms.
 config::Projector settings(double software_ms) {
@@ -55,7 +55,7 @@ class Machine {
  private:
   std::int64_t drawing_ns_;
   SubFramePlan plan_;
-  std::int64_t now_ns_ = kStart_ns, handed_ns_ = 0;
+  std::int64_t now_ns_ = kPlanStart_ns, handed_ns_ = 0;
   int left_ = 0;
 };
 
@@ -178,13 +178,13 @@ TEST(SubFramePlan, AMachineThatNeedsMoreThanAnOutputFrameForADrawingSkipsWholeOn
 
 TEST(SubFramePlan, FollowsTheRhythmOfTheProjector) {
   SubFramePlan plan(settings(0.5));
-  plan.start(kStart_ns);
+  plan.start(kPlanStart_ns);
   plan.drawn({0, 8}, kPlanMs / 2);
-  plan.presented({.handed_ns = kStart_ns + 3 * kPlanMs,
-                  .display_ns = kStart_ns + 12 * kPlanMs,
-                  .next_ns = kStart_ns + 17 * kPlanMs});
-  plan.start(kStart_ns + 4 * kPlanMs);
-  EXPECT_EQ(plan.hand_over_ns(), kStart_ns + 17 * kPlanMs);
+  plan.presented({.handed_ns = kPlanStart_ns + 3 * kPlanMs,
+                  .display_ns = kPlanStart_ns + 12 * kPlanMs,
+                  .next_ns = kPlanStart_ns + 17 * kPlanMs});
+  plan.start(kPlanStart_ns + 4 * kPlanMs);
+  EXPECT_EQ(plan.hand_over_ns(), kPlanStart_ns + 17 * kPlanMs);
 }
 
 TEST(SubFramePlan, EachSubFrameIsLitForItsOwnPartOfTheOutputFrame) {
