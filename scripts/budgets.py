@@ -55,6 +55,14 @@ def twin_of(header):
     return header.removesuffix(".hpp") + ".cpp"
 
 
+def header_of(file):
+    return file.removesuffix(".cpp") + ".hpp" if file.endswith(".cpp") else file
+
+
+def source_of(file):
+    return twin_of(file) if file.endswith(".hpp") else file
+
+
 def header_breaches(sources):
     """Headers that only one file of their folder includes, and that would leave it short enough."""
     users = collections.defaultdict(set)
@@ -68,8 +76,9 @@ def header_breaches(sources):
             continue
         user, = users[header]
         here = pathlib.PurePosixPath(header).parent
-        if pathlib.PurePosixPath(user).parent == here and \
-                sources.lines(header, twin_of(header), user) <= FOLDED_LINES:
+        declared = sources.lines(header, header_of(user))
+        defined = sources.lines(twin_of(header), source_of(user))
+        if pathlib.PurePosixPath(user).parent == here and max(declared, defined) <= FOLDED_LINES:
             yield f"{header}: only {user} includes it; fold it into that file"
 
 

@@ -32,7 +32,8 @@ Result<void> add_motion(const char* motion, int rows_per_row, double seconds, co
   rig.pose.backend = "none";
   const auto twin = twin::Twin::create(rig, calib::reference_rig());
   if (!twin) return tl::make_unexpected(twin.error());
-  auto eye = SeeingEye::open(stereo.calibration, rows_per_row, rig, **twin);
+  auto eye =
+      SeeingEye::open(stereo.calibration, config::Viewpoint::first, rows_per_row, rig, **twin);
   if (!eye) return tl::make_unexpected(eye.error());
   const auto images = static_cast<std::uint64_t>(seconds * stereo.rate_hz);
   for (std::uint64_t k = 0; k < images; ++k) {

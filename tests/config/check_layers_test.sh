@@ -64,7 +64,7 @@ must_catch 'the tools must not include services/lab/twin/twin.hpp, which is of t
 must_catch 'a cycle: renderer/filter -> renderer/predict -> renderer/filter' \
   renderer/predict/CMakeLists.txt 'handcast_program(planted USES renderer/filter)' \
   renderer/predict/planted.cpp '#include "renderer/filter/filters.hpp"'
-must_catch 'a cycle: services/landmarks/inference/onnx -> services/landmarks/inference/onednn -> ' \
+must_catch 'a cycle: services/landmarks/inference/onednn -> services/landmarks/inference/onnx -> ' \
   services/landmarks/inference/onnx/planted.cpp '#include "services/landmarks/inference/onednn/builder.hpp"'
 
 # The headers of other projects.
