@@ -2,11 +2,15 @@
 #include "supervisor/look/metrics/metrics.hpp"
 
 #include <fmt/format.h>
+#include <prometheus/collectable.h>
+#include <prometheus/exposer.h>
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <mutex>
 
 #include "ipc/base/clock.hpp"
 #include "supervisor/life/state.hpp"
@@ -276,12 +280,43 @@ std::string metrics_text(const RigLook& look) {
   return prometheus::TextSerializer().Serialize(metrics_of(look));
 }
 
-Result<HttpServer> serve_metrics(int port, std::function<RigLook()> look) {
-  auto server = HttpServer::listen(port, [look = std::move(look)] { return metrics_text(look()); });
-  if (server) return server;
-  return fail(Errc::bad_config, fmt::format("{}; set supervisor.metrics_port to another port, or "
-                                            "to 0",
-                                            server.error().what));
+/// The metrics as they are at each scrape.
+class MetricsServer::Parts : public prometheus::Collectable {
+ public:
+  explicit Parts(std::function<RigLook()> look) : look_(std::move(look)) {}
+
+  std::vector<MetricFamily> Collect() const override {
+    const std::lock_guard lock(mutex_);
+    return metrics_of(look_());
+  }
+
+  std::unique_ptr<prometheus::Exposer> exposer;
+
+ private:
+  mutable std::mutex mutex_;
+  std::function<RigLook()> look_;
+};
+
+Result<MetricsServer> MetricsServer::open(int port, std::function<RigLook()> look) try {
+  auto parts = std::make_shared<Parts>(std::move(look));
+  parts->exposer = std::make_unique<prometheus::Exposer>(std::vector<std::string>{
+      "listening_ports", fmt::format("127.0.0.1:{}", port), "num_threads", std::to_string(kThreads),
+      "request_timeout_ms", std::to_string(kPatience_ms)});
+  parts->exposer->RegisterCollectable(parts);
+  return MetricsServer(std::move(parts));
+} catch (const std::exception& problem) {
+  return fail(Errc::bad_config,
+              fmt::format("port {} of 127.0.0.1 cannot be opened ({}); set supervisor.metrics_port "
+                          "to another port, or to 0",
+                          port, problem.what()));
+}
+
+int MetricsServer::port() const { return parts_->exposer->GetListeningPorts().front(); }
+
+MetricsServer::MetricsServer(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
+MetricsServer::MetricsServer(MetricsServer&&) noexcept = default;
+MetricsServer::~MetricsServer() {
+  if (parts_) parts_->exposer.reset();  // before what its threads call
 }
 
 }  // namespace handcast::supervisor
