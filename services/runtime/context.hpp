@@ -112,15 +112,12 @@ class Context {
   std::uint64_t complaints_ = 0;
 };
 
-/// The description of a daemon, completed with the settings that every daemon reads: calibration,
-/// name of its back end, [NAME.process].
-daemon::ServiceDescription complete(daemon::ServiceDescription description);
-
 /// Opens what a daemon opens at its start, but neither rings nor devices, and closes it again.
 using Check = std::function<Result<void>(const config::Rig&, const calib::Calibration&)>;
 
 /// The main function of all daemons: parses the command line, loads the rig and runs `body`, or,
-/// with --check, `check`. Returns the exit code. `description` need not be complete().
+/// with --check, `check`. Returns the exit code. `description`: without the settings that every
+/// daemon reads (calibration, NAME.backend, [NAME.process]).
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body, const Check& check = {});
 

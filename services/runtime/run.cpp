@@ -5,41 +5,16 @@
 #include "config/second_view.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/version.hpp"
 #include "ipc/base/wording.hpp"
 #include "ipc/daemon/check_word.hpp"
 #include "ipc/daemon/stop_signal.hpp"
-#include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/options.hpp"
 #include "services/runtime/scheduling.hpp"
 #include "services/runtime/second_view.hpp"
 
 namespace handcast::service {
 namespace {
-
-void print_help(const daemon::ServiceDescription& description) {
-  fmt::print(
-      "handcast-{} — {}\n\n"
-      "usage: handcast-{} --config RIG.toml [--set path=value]...\n\n"
-      "  --config FILE      the rig file\n"
-      "  --set path=value   a setting that overrides that of the file; may be repeated\n"
-      "  --check            opens what the rig names (files, models, calibration), prints what is\n"
-      "                     wrong, or 'checked', and ends\n"
-      "  --backends         prints the back ends of this build, one per line\n"
-      "  --describe         prints its rings, settings and back ends as JSON\n"
-      "  --version, --help\n\n"
-      "`handcast up RIG.toml` starts this program together with the rest of the rig and hands it "
-      "its rings.\n",
-      description.name, description.summary, description.name);
-}
-
-void print_answer(const daemon::ServiceDescription& description, CommandLine::Task task) {
-  using Task = CommandLine::Task;
-  if (task == Task::help) print_help(description);
-  if (task == Task::version) fmt::print("handcast-{} {}\n", description.name, version());
-  if (task == Task::backends) fmt::print("{}", daemon::print_backends(description));
-  if (task == Task::describe) fmt::print("{}", daemon::print_description(complete(description)));
-}
 
 /// Stands for a calibration that cannot be loaded, so that the rest of the rig can be checked. It
 /// has two cameras.
@@ -64,10 +39,10 @@ Result<calib::Calibration> load_calibration(const config::Rig& rig,
       "`handcast calibrate`");
 }
 
-int serve(const daemon::ServiceDescription& description, const CommandLine& line,
+int serve(const daemon::ServiceDescription& description, const Options& options,
           const std::function<void(Context&)>& body) try {
   daemon::install_stop_signals();
-  auto rig = must(config::load_rig(line.config_file, line.settings));
+  auto rig = must(config::load_rig(options.config_file, options.settings));
   for (const auto& note :
        must(apply_scheduling(config::process_of(rig, description.name), description.name)))
     log::warning("{}", note);
@@ -104,10 +79,10 @@ std::vector<Error> find_faults(const config::Rig& rig,
 }
 
 /// Prints the faults, one sentence per line; the last word if there are none.
-int examine(const daemon::ServiceDescription& description, const CommandLine& line,
+int examine(const daemon::ServiceDescription& description, const Options& options,
             const Check& check) {
   log::set_level(log::Level::error);
-  const auto rig = config::load_rig(line.config_file, line.settings);
+  const auto rig = config::load_rig(options.config_file, options.settings);
   const auto faults = rig ? find_faults(*rig, description, check) : std::vector{rig.error()};
   for (const auto& fault : faults) fmt::print("{}\n", printable(fault.what));
   if (faults.empty()) fmt::print("{}", daemon::kCheckedWord);
@@ -116,27 +91,21 @@ int examine(const daemon::ServiceDescription& description, const CommandLine& li
 
 }  // namespace
 
-daemon::ServiceDescription complete(daemon::ServiceDescription description) {
-  auto& settings = description.settings;
-  settings.push_back("calibration");
-  if (!description.backends.empty()) settings.push_back(description.name + ".backend");
-  settings.push_back(description.name + ".process");
-  return description;
-}
-
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body, const Check& check) {
   log::set_program(description.name);
   return run_program("handcast-" + description.name, argc, argv, [&](int count, char** words) {
-    const auto line = parse_command_line(count, words);
-    if (!line) {
-      log::error("{}", line.error().what);
+    const auto options = parse_options(description, count, words);
+    if (!options) {
+      log::error("{}", options.error().what);
       return kExitUsage;
     }
-    if (line->task == CommandLine::Task::serve) return serve(description, *line, body);
-    if (line->task == CommandLine::Task::check) return examine(description, *line, check);
-    print_answer(description, line->task);
-    return kExitDone;
+    if (options->answer) {
+      fmt::print("{}", *options->answer);
+      return kExitDone;
+    }
+    return options->check ? examine(description, *options, check)
+                          : serve(description, *options, body);
   });
 }
 

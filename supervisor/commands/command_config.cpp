@@ -3,7 +3,6 @@
 
 #include "config/rig.hpp"
 #include "ipc/base/join.hpp"
-#include "supervisor/base/options.hpp"
 #include "supervisor/commands/check_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/spec/catalogue.hpp"
@@ -26,30 +25,30 @@ int check(const config::Rig& rig, const std::string& file,
 }  // namespace
 
 int run_config(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--set"},
-                                                .flags = {"--print", "--check", "--reference"},
-                                                .words = {},
-                                                .more_words = 1});
-  if (!options)
-    return complain(kExitUsage, "config: " + options.error().what + "; `handcast help config`");
-  if (options->has("--reference")) {
+  auto line = command_line_of("config");
+  std::string file;
+  std::vector<std::string> settings;
+  bool prints = false, checks = false, explains = false;
+  line.add("[FILE]", file, "The rig file");
+  line.add("--print", prints, "All settings, with defaults where FILE has none");
+  line.add("--check", checks,
+           "What `handcast up` would refuse: settings, back ends, and the files that the services "
+           "open; devices, outputs and ports are not opened");
+  line.add("--reference", explains, "The page config/REFERENCE.md");
+  line.add("--set path=value", settings, "A setting that overrides that of the file");
+  if (const auto code = line.answered(arguments)) return *code;
+  if (explains) {
     fmt::print("{}{}", config::print_reference(), print_backends(installed_services()));
     return kExitDone;
   }
-  const bool checks = options->has("--check");
-  if (options->has("--print") == checks)
-    return complain(
-        kExitUsage,
-        "config: one of --print, --check, --reference is needed; `handcast help config`");
-  if (checks && options->words.empty()) return complain(kExitUsage, "config: --check needs a file");
+  if (prints == checks) return line.refuse("one of --print, --check, --reference is needed");
+  if (checks && file.empty()) return line.refuse("--check needs a file");
 
-  const auto settings = options->all("--set");
   const auto rig =
-      options->words.empty()
-          ? config::parse_rig("", std::filesystem::current_path() / "defaults", settings)
-          : config::load_rig(options->words.front(), settings);
+      file.empty() ? config::parse_rig("", std::filesystem::current_path() / "defaults", settings)
+                   : config::load_rig(file, settings);
   if (!rig) return complain(rig.error());
-  if (checks) return check(*rig, options->words.front(), settings);
+  if (checks) return check(*rig, file, settings);
   fmt::print("{}", config::print_rig(*rig));
   return kExitDone;
 }

@@ -5,9 +5,9 @@
 
 #include <ctime>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/verb_options.hpp"
 #include "services/lab/chart/write.hpp"
 #include "services/tools/page/machine.hpp"
 
@@ -19,21 +19,20 @@ The charts need the results of these plans in config/sweeps: A and C ladder.toml
 failures.toml. scripts/charts runs all of them.)";
 
 static int run_verb(int argc, char** argv) {
-  CLI::App app(
+  CommandLine line(
+      "handcast chart",
       "Draws the results of sweeps: a self-contained page, the charts as SVG, and the numbers "
       "behind them as CSV.",
-      "handcast chart");
-  app.footer(kFooter);
+      kFooter);
   chart::Order order;
   order.imprint = {"handcast: speed against accuracy", page::this_machine(),
                    fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
-  app.add_option("RESULTS.csv", order.results, "Files of `handcast sweep`")->required();
-  app.add_option("--out", order.folder,
-                 "Folder for charts.html, *.svg and *.csv (default: out/charts)")
-      ->default_val("out/charts");
-  app.add_option("--title", order.imprint.title, "Heading of the page");
-  app.add_option("--gnuplot", order.gnuplot, "The gnuplot program (default: gnuplot)");
-  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
+  order.folder = "out/charts";
+  line.add("RESULTS.csv...", order.results, "Files of `handcast sweep`");
+  line.add("--out DIR", order.folder, "Folder for charts.html, *.svg and *.csv");
+  line.add("--title TEXT", order.imprint.title, "Heading of the page");
+  line.add("--gnuplot FILE", order.gnuplot, "The gnuplot program");
+  if (const auto code = line.answered(argc, argv)) return *code;
 
   const auto written = chart::write_charts(order);
   if (!written) {

@@ -4,27 +4,27 @@
 
 #include <ctime>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/verb_options.hpp"
 #include "services/lab/report/report.hpp"
 #include "services/tools/page/machine.hpp"
 
 using namespace handcast;
 
 static int run_verb(int argc, char** argv) {
-  CLI::App app(
-      "Makes report.html, metrics.json and preview.mp4 from the results of a demonstration.",
-      "handcast report");
+  CommandLine line(
+      "handcast report",
+      "Makes report.html, metrics.json and preview.mp4 from the results of a demonstration.");
   std::string folder;
   report::Imprint imprint{"handcast: light that stays on moving hands", page::this_machine(),
                           fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)))};
-  app.add_option("--out", folder,
-                 "Folder with baseline.json, paper.json, twin.json, live.json, observer.json and "
-                 "frames/; the report is written to it")
-      ->required();
-  app.add_option("--title", imprint.title, "Heading of the page");
-  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
+  line.add("--out DIR", folder,
+           "Folder with baseline.json, paper.json, twin.json, live.json, observer.json and "
+           "frames/; the report is written to it");
+  line.add("--title TEXT", imprint.title, "Heading of the page");
+  if (const auto code = line.answered(argc, argv)) return *code;
+  if (folder.empty()) return line.refuse("--out is missing");
 
   const auto written = report::write_report(folder, imprint);
   if (!written) {

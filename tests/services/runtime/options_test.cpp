@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/runtime/options.hpp"
+
+#include <gmock/gmock.h>
+
+namespace handcast::service {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Result<Options> parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "handcast-camera");
+  return parse_options({.name = "camera", .summary = "Delivers images.", .paced_by = "a clock"},
+                       static_cast<int>(arguments.size()), arguments.data());
+}
+
+TEST(DaemonOptions, SettingsKeepTheirOrder) {
+  const auto options = parse({"--set", "a.b=1", "--config=rig.toml", "--set", "a.b=x=y"});
+  ASSERT_TRUE(options);
+  EXPECT_EQ(options->config_file, "rig.toml");
+  EXPECT_THAT(options->settings, ElementsAre("a.b=1", "a.b=x=y"));
+  EXPECT_EQ(options->answer, std::nullopt);
+}
+
+TEST(DaemonOptions, WhatCannotBeUnderstoodIsNamed) {
+  EXPECT_THAT(parse({"--config"}).error().what, HasSubstr("--config needs a value"));
+  EXPECT_EQ(parse({"--frobnicate"}).error().what,
+            "unknown option '--frobnicate'; `handcast-camera --help`");
+  EXPECT_THAT(parse({}).error().what, HasSubstr("handcast up"));
+  EXPECT_EQ(parse({}).error().code, Errc::bad_config);
+}
+
+TEST(DaemonOptions, ACheckNeedsARig) {
+  EXPECT_TRUE(parse({"--config", "rig.toml", "--check"})->check);
+  EXPECT_THAT(parse({"--check"}).error().what, HasSubstr("--config FILE is missing"));
+}
+
+TEST(DaemonOptions, QuestionsNeedNoConfiguration) {
+  EXPECT_EQ(parse({"--backends"})->answer, "") << "it has none";
+  EXPECT_THAT(*parse({"--describe"})->answer, HasSubstr("camera.process"));
+  EXPECT_THAT(*parse({"--version"})->answer, StartsWith("handcast-camera "));
+  EXPECT_THAT(*parse({"-h"})->answer, HasSubstr("Delivers images."));
+}
+
+}  // namespace
+}  // namespace handcast::service
