@@ -9,7 +9,7 @@
 #include "ipc/control/control_client.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/rig/status_text.hpp"
+#include "supervisor/look/figures/figures.hpp"
 #include "supervisor/succession/stop_rig.hpp"
 
 namespace handcast::supervisor {
@@ -143,7 +143,7 @@ int run_status(const Arguments& arguments) {
       send(rig, {.verb = control::Verb::status, .service = {}, .backend = {}});
   if (exit_code != kExitDone) return exit_code;
   const auto& status = answer["status"];
-  fmt::print("{}", as_json ? status.dump(2) + "\n" : print_status(status));
+  fmt::print("{}", as_json ? status.dump(2) + "\n" : print_status(figures_in(status)));
   return kExitDone;
 }
 

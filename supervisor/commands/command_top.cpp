@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <deque>
+#include <nlohmann/json.hpp>
 
 #include "ipc/base/clock.hpp"
 #include "supervisor/commands/choose_rig.hpp"
@@ -23,7 +24,7 @@ int show_once(const std::string& rig, bool as_json) {
   const auto before = watcher.observe();
   if (before.missing.empty()) sleep_until_ns(before.taken_ns + kOnce_ns);
   const auto now = watcher.observe();
-  if (now.status.is_null()) return complain(kExitRetry, now.missing);
+  if (!now.figures) return complain(kExitRetry, now.missing);
 
   const auto model = compare(before, now);
   if (as_json) {

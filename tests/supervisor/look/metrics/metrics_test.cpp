@@ -63,9 +63,8 @@ TEST(Metrics, RingsAndReadersHaveTheirCounts) {
 TEST(Metrics, TheLightSaysWhoKnowsItsTimesAndWhatTheOutputMissed) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_light"))) << "none came";
-  look.status["light"] = {
-      {"times_by", "window system"}, {"missed_refreshes", 7}, {"doubled_frames", 5}};
-  look.status["rings"]["projection.frames"] = {{"wanted_hz", 60}};
+  look.figures->light = LightFigures{"window system", 7, 5};
+  look.figures->streams["projection.frames"].wanted_hz = 60;
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr(R"(handcast_light_times_info{by="window system"} 1)"));
   EXPECT_THAT(text, HasSubstr("handcast_light_missed_refreshes_total 7"));
@@ -75,7 +74,7 @@ TEST(Metrics, TheLightSaysWhoKnowsItsTimesAndWhatTheOutputMissed) {
 
 TEST(Metrics, LostImagesAreCountedByReason) {
   auto look = look_at(10);
-  look.status["lost_images"] = {{"missing", 3}, {"skipped", 2}};
+  look.figures->lost_images = {{"missing", 3}, {"skipped", 2}};
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr(R"(handcast_camera_lost_images_total{reason="missing"} 3)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_camera_lost_images_total{reason="skipped"} 2)"));
@@ -84,7 +83,7 @@ TEST(Metrics, LostImagesAreCountedByReason) {
 TEST(Metrics, FaultsOfTheTrackerAreCountedByKind) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_tracker_faults")));
-  look.status["tracker_faults"] = {{"frozen", 3}, {"exchanged", 0}};
+  look.figures->tracker_faults = {{"frozen", 3}, {"exchanged", 0}};
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr(R"(handcast_tracker_faults_total{kind="frozen"} 3)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_tracker_faults_total{kind="exchanged"} 0)"));
@@ -93,8 +92,7 @@ TEST(Metrics, FaultsOfTheTrackerAreCountedByKind) {
 TEST(Metrics, TheDriftOfTheTrackerIsThereOnceItIsKnown) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_tracker")));
-  look.status["tracker_drift"] = {
-      {"moved", true}, {"places", 9}, {"across_mm", 5.5}, {"turn_deg", 0.25}};
+  look.figures->tracker_drift = DriftFigures{true, 9, 5.5, 0.25};
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr("handcast_tracker_moved 1"));
   EXPECT_THAT(text, HasSubstr("handcast_tracker_drift_millimetres 5.5"));
@@ -113,7 +111,7 @@ TEST(Metrics, OfADeadSupervisorTellThatAndGoOnWithTheRings) {
   look.missing = "nobody answers";
   EXPECT_THAT(metrics_text(look), AllOf(HasSubstr("handcast_supervisor_up 0"),
                                         HasSubstr("handcast_ring_messages_total")));
-  look.status = nullptr;
+  look.figures.reset();
   EXPECT_THAT(metrics_text(look), HasSubstr("handcast_supervisor_up 0"));
 }
 
