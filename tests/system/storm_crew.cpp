@@ -21,7 +21,7 @@ namespace {
 using namespace std::chrono_literals;
 using Random = std::minstd_rand;
 
-ipc::Segment again(const ipc::Segment& ring) {
+ipc::Segment mapped_again(const ipc::Segment& ring) {
   auto segment = ipc::Segment::open(UniqueFd(::fcntl(ring.fd(), F_DUPFD_CLOEXEC, 0)));
   if (!segment) ::_exit(1);
   return std::move(*segment);
@@ -44,7 +44,7 @@ bool write_one(ipc::Writer<Scroll>& writer, Notes& notes, Random& random) {
 /// One writer in four publishes without pauses, the others pause for up to 0.5 ms after each
 /// message.
 [[noreturn]] void write_without_end(const ipc::Segment& ring, Notes& notes, Random random) {
-  auto writer = ipc::Writer<Scroll>::attach(again(ring));
+  auto writer = ipc::Writer<Scroll>::attach(mapped_again(ring));
   if (!writer) {
     ++notes.refused;
     ::_exit(1);
@@ -115,7 +115,7 @@ class ReaderProcess {
 
 [[noreturn]] void read_without_end(const ipc::Segment& ring, const ReaderKind& kind, Notes& notes,
                                    Random random) {
-  auto reader = ipc::Reader<Scroll>::attach(again(ring), kind.wait, kind.hold);
+  auto reader = ipc::Reader<Scroll>::attach(mapped_again(ring), kind.wait, kind.hold);
   if (!reader) {
     ++notes.refused;
     ::_exit(1);

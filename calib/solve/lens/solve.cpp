@@ -133,11 +133,4 @@ std::optional<Placed> place(const Points& view, const CameraModel& camera) {
   return placed;
 }
 
-std::optional<glm::dmat4> board_pose(const CameraModel& camera, const BoardView& view) {
-  constexpr double kMost_px = 3;
-  const auto placed = place(points_of(view), camera);
-  if (!placed || !(placed->rms_px < kMost_px)) return std::nullopt;
-  return matrix_of(placed->pose);
-}
-
 }  // namespace handcast::calib

@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "calib/calibration.hpp"
-#include "calib/solve/board/board.hpp"
 #include "calib/solve/lens/lens_fit.hpp"
 
 namespace handcast::calib {
@@ -55,9 +53,5 @@ std::optional<Placed> place(const Points& view, const CameraModel& camera);
 cv::Matx33d matrix_of(const CameraModel& camera);
 cv::Vec<double, 5> lens_of(const CameraModel& camera);
 /// @}
-
-/// Where a board is, by a lens that is known: camera_from_board, rigid, metres. Empty if the points
-/// do not determine it, or are more than 3 px (root mean square) from where it would have them.
-std::optional<glm::dmat4> board_pose(const CameraModel& camera, const BoardView& view);
 
 }  // namespace handcast::calib

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/solve/lens/solve.hpp"
+#include "calib/solve/lens/board_pose.hpp"
 #include "calib/solve/pair/corner_error.hpp"
 
 namespace handcast::calib {

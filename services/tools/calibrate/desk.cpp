@@ -12,7 +12,7 @@
 namespace handcast::calibrate {
 namespace {
 
-constexpr std::int64_t kPrintEvery_ns = 200'000'000, kLogEvery_ns = 5'000'000'000;
+constexpr std::int64_t kRefreshEvery_ns = 200'000'000, kLogEvery_ns = 5'000'000'000;
 
 int percent_of(double share) { return static_cast<int>(std::lround(100 * share)); }
 
@@ -99,7 +99,7 @@ void Progress::show(double share, const std::string& advice) {
 }
 
 void Progress::say(double share, const std::string& advice) {
-  if (now_ns() - printed_ns_ < (is_terminal_ ? kPrintEvery_ns : kLogEvery_ns)) return;
+  if (now_ns() - printed_ns_ < (is_terminal_ ? kRefreshEvery_ns : kLogEvery_ns)) return;
   printed_ns_ = now_ns();
   // \033[K clears the rest of the line (ECMA-48).
   fmt::print(stderr, "{}  {}: {:3} %  {}{}", is_terminal_ ? "\r" : "", title_, percent_of(share),

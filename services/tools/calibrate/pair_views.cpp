@@ -8,7 +8,7 @@
 
 #include "calib/solve/board/board_finder.hpp"
 #include "calib/solve/lens/auto_capture.hpp"
-#include "calib/solve/lens/solve.hpp"
+#include "calib/solve/lens/board_pose.hpp"
 #include "calib/solve/pair/pair_off.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "services/tools/calibrate/lens_step.hpp"
@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kEnoughViews = 15, kEnoughOfOnePlace = 5;
+constexpr std::size_t kEnoughPairs = 15, kEnoughOfOnePlace = 5;
 constexpr std::size_t kAlmost = 3;    ///< so few views are missing at the end
 constexpr double kDepthRange = 1.25;  ///< farthest distance of the board to its nearest one
 /// Images of a still board may be so far apart in time, and those of triggered cameras are not.
@@ -80,10 +80,10 @@ class PairViews {
 
   bool are_enough() const {
     if (wanted_ == PairWanted::one_place) return views_.size() >= kEnoughOfOnePlace;
-    return views_.size() >= kEnoughViews && is_deep();
+    return views_.size() >= kEnoughPairs && is_deep();
   }
   double share() const {
-    const auto enough = wanted_ == PairWanted::one_place ? kEnoughOfOnePlace : kEnoughViews;
+    const auto enough = wanted_ == PairWanted::one_place ? kEnoughOfOnePlace : kEnoughPairs;
     return std::min(0.99, static_cast<double>(views_.size()) / static_cast<double>(enough));
   }
   std::string advice() const {
@@ -92,14 +92,14 @@ class PairViews {
     if (!sees_second_)
       return "Only the first camera sees the board; hold it before the second, too";
     if (wanted_ == PairWanted::one_place) return "Hold the board still";
-    if (2 * views_.size() > kEnoughViews && !is_deep())
-      return views_.size() < kEnoughViews
+    if (2 * views_.size() > kEnoughPairs && !is_deep())
+      return views_.size() < kEnoughPairs
                  ? "Hold the board nearer, or farther away"
                  : "Almost done: hold the board nearer, or farther away than before";
-    if (kEnoughViews - views_.size() <= kAlmost)
+    if (kEnoughPairs - views_.size() <= kAlmost)
       return fmt::format("Almost done: {} more {}, tilted to another side",
-                         kEnoughViews - views_.size(),
-                         kEnoughViews - views_.size() == 1 ? "place" : "places");
+                         kEnoughPairs - views_.size(),
+                         kEnoughPairs - views_.size() == 1 ? "place" : "places");
     return "Hold the board still at another place, tilted to another side";
   }
   PairSeen taken() && { return {std::move(views_), missing_}; }

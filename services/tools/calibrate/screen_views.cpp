@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "calib/solve/lens/solve.hpp"
+#include "calib/solve/lens/board_pose.hpp"
 #include "calib/solve/screen/gray_code.hpp"
 
 namespace handcast::calibrate {

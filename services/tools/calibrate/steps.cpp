@@ -19,10 +19,10 @@ using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
 /// In the order in which they are measured.
-constexpr std::array kSteps{&kLensStep,   &kSecondLensStep, &kPairStep,
-                            &kScreenStep, &kTrackerStep,    &kLightStep};
+constexpr std::array kMeasuringOrder{&kLensStep,   &kSecondLensStep, &kPairStep,
+                                     &kScreenStep, &kTrackerStep,    &kLightStep};
 /// In the order in which they are checked: a hand first, then the board.
-constexpr std::array kChecks{&kTrackerStep, &kPairStep, &kScreenStep};
+constexpr std::array kCheckingOrder{&kTrackerStep, &kPairStep, &kScreenStep};
 
 /// Says what to do, and waits until a person is ready. False if the step shall be left out.
 Result<bool> is_wanted(const Options& options, Keys& keys, const StepEntry& entry) {
@@ -110,7 +110,7 @@ Result<int> check_all(const Options& options, const config::Rig& rig, const Runn
                       const fs::path& logs, bool is_up) {
   Keys keys;
   bool is_good = true;
-  for (const auto* entry : kChecks) {
+  for (const auto* entry : kCheckingOrder) {
     if (!has_need_of(rig, entry->step)) continue;
     const auto good = do_check(options, running, logs, keys, *entry, is_up);
     if (!good) return fail_in(config::word_of(entry->step), good.error());
@@ -121,12 +121,14 @@ Result<int> check_all(const Options& options, const config::Rig& rig, const Runn
 
 }  // namespace
 
-const StepEntry& entry_of(Step step) { return **std::ranges::find(kSteps, step, &StepEntry::step); }
+const StepEntry& entry_of(Step step) {
+  return **std::ranges::find(kMeasuringOrder, step, &StepEntry::step);
+}
 
 std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const Session& session) {
   std::vector<Step> steps = options.steps;
   if (!steps.empty()) return steps;
-  for (const auto* entry : kSteps)
+  for (const auto* entry : kMeasuringOrder)
     if (has_need_of(rig, entry->step) && !session.is_done(entry->step))
       steps.push_back(entry->step);
   return steps;

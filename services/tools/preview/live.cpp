@@ -11,20 +11,10 @@
 #include "ipc/base/exit_code.hpp"
 #include "renderer/media/picture.hpp"
 #include "renderer/window/window.hpp"
+#include "services/tools/preview/keys.hpp"
 #include "services/tools/preview/rig_feed.hpp"
 
 namespace handcast::preview {
-
-Wish obey(std::string_view key, Look& look) {
-  if (key == "q" || key == "Escape") return Wish::quit;
-  if (key == "s") return Wish::shot;
-  if (key == "h") look.help = !look.help;
-  if (key == " ") look.frozen = !look.frozen;
-  if (key.size() == 1 && key[0] >= '1' && key[0] < '1' + static_cast<char>(kLayers))
-    look.layers.flip(static_cast<std::size_t>(key[0] - '1'));
-  return Wish::nothing;
-}
-
 namespace {
 
 constexpr std::int64_t kNote_ns = 3'000'000'000;  ///< how long a note is shown

@@ -138,12 +138,12 @@ TEST_F(Replay, AFileThatMayNotBeLookedForIsASentenceNotAnException) {
   const auto names = [](const char* name) {
     return testing::HasSubstr(std::string(name) + "' exists: ");
   };
-  EXPECT_THAT(complaint_with("camera", camera::open_camera), names("camera"));
-  EXPECT_THAT(complaint_with("camera_timestamps.npy", camera::open_camera),
-              names("camera_timestamps.npy"));
+  const auto open_camera = [](const auto&... with) { return camera::open_camera(with...); };
+  const auto open_detector = [](const auto&... with) { return landmarks::open_detector(with...); };
+  EXPECT_THAT(complaint_with("camera", open_camera), names("camera"));
+  EXPECT_THAT(complaint_with("camera_timestamps.npy", open_camera), names("camera_timestamps.npy"));
   EXPECT_THAT(complaint_with("joints_left.npy", pose::open_pose_source), names("joints_left.npy"));
-  EXPECT_THAT(complaint_with("landmarks_left.npy", landmarks::open_detector),
-              names("landmarks_left.npy"));
+  EXPECT_THAT(complaint_with("landmarks_left.npy", open_detector), names("landmarks_left.npy"));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr Exit kSpareCrash{.signalled = true, .code = 9};
 
 std::int64_t at_s(double seconds) { return seconds_to_ns(seconds); }
 
-event::Tick beating_at(double time_s) { return {.last_sign_ns = at_s(time_s)}; }
+event::Tick spare_beating_at(double time_s) { return {.last_sign_ns = at_s(time_s)}; }
 
 /// A service that keeps a spare, ready since 10 at_s.
 Machine ready_machine(Spare spare = spare::None{}) {
@@ -36,7 +36,7 @@ TEST(NextSpare, ItIsStartedWhenTheWorkerIsReadyAndPreparedWhenItSpeaks) {
   EXPECT_EQ(machine.spare(), "none");
   machine.at(2, event::SaidReady{});
   EXPECT_EQ(machine.spare(), "due at 2");
-  EXPECT_THAT(machine.at(2.05, beating_at(2)), ElementsAre("spawn spare"));
+  EXPECT_THAT(machine.at(2.05, spare_beating_at(2)), ElementsAre("spawn spare"));
   EXPECT_EQ(machine.spare(), "preparing until 12.05");
   machine.at(3, event::SpareSpoke{});
   machine.at(4, event::SpareSpoke{});
@@ -75,16 +75,16 @@ TEST(NextSpare, AStormOfDeathsIsNotFedWithSpares) {
 
 TEST(NextSpare, OneThatIsLateOrSilentIsKilledAndReplaced) {
   auto late = ready_machine(spare::Preparing{.late_ns = at_s(20)});
-  EXPECT_THAT(late.at(19.9, beating_at(19.9)), IsEmpty());
+  EXPECT_THAT(late.at(19.9, spare_beating_at(19.9)), IsEmpty());
   EXPECT_THAT(
-      late.at(20, beating_at(20)),
+      late.at(20, spare_beating_at(20)),
       ElementsAre("warn: the spare of pose was not prepared within 10 at_s; killed", "kill spare"));
   auto silent = ready_machine(kSparePrepared);
-  EXPECT_THAT(silent.at(21.9, beating_at(21.9)), IsEmpty());
-  EXPECT_THAT(silent.at(22, beating_at(22)),
+  EXPECT_THAT(silent.at(21.9, spare_beating_at(21.9)), IsEmpty());
+  EXPECT_THAT(silent.at(22, spare_beating_at(22)),
               ElementsAre("warn: the spare of pose has given no sign of life for 2 at_s; killed",
                           "kill spare"));
-  EXPECT_THAT(silent.at(30, beating_at(30)), IsEmpty());
+  EXPECT_THAT(silent.at(30, spare_beating_at(30)), IsEmpty());
   EXPECT_THAT(
       silent.at(30, event::SpareEnded{kSpareCrash}),
       ElementsAre("warn: the spare of pose ended (signal 9 (Killed)); another one in 0 ms"));
@@ -148,7 +148,7 @@ TEST(NextSpare, OneOfOldSettingsIsReplacedWithTheWorker) {
   EXPECT_EQ(machine.spare(), "leaving until 23, next at 22");
   machine.at(22.5, event::SpareEnded{kSpareCrash});
   EXPECT_EQ(machine.spare(), "due at 22");
-  EXPECT_THAT(machine.at(22.6, beating_at(22.6)), ElementsAre("spawn spare"));
+  EXPECT_THAT(machine.at(22.6, spare_beating_at(22.6)), ElementsAre("spawn spare"));
 }
 
 TEST(NextSpare, TheSettingsSwitchItOnAndOff) {
@@ -174,7 +174,7 @@ TEST(NextSpare, AServiceThatGivesUpNeedsNone) {
 TEST(NextSpare, AStandstillIsHeldAgainstItNeither) {
   auto machine = ready_machine(kSparePrepared);
   machine.at(50, event::StoodStill{at_s(29)});
-  EXPECT_THAT(machine.at(50.5, beating_at(50.5)), IsEmpty());
+  EXPECT_THAT(machine.at(50.5, spare_beating_at(50.5)), IsEmpty());
   EXPECT_EQ(machine.spare(), "prepared, heard at 49");
 }
 

@@ -6,7 +6,7 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr std::int64_t kOneSecond_ns = 1'000'000'000;
 constexpr std::int64_t kMs_ns = 1'000'000;
 
 msg::StageMarks frame_at(std::int64_t time_ns, std::int64_t span_ns = kMs_ns) {
@@ -37,7 +37,7 @@ TEST(Histogram, NothingAddedIsZeroAndNonsenseIsKeptInBounds) {
 
 TEST(Ledger, AHeartBeatIsNotAFrame) {
   Ledger ledger;
-  auto beat = frame_at(kSecond_ns);
+  auto beat = frame_at(kOneSecond_ns);
   beat.count = 0;
   ledger.add("camera", beat);
   EXPECT_EQ(ledger.frames("camera").total(), 0u);
@@ -46,7 +46,7 @@ TEST(Ledger, AHeartBeatIsNotAFrame) {
 
 TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
   Ledger ledger;
-  auto marks = frame_at(kSecond_ns);
+  auto marks = frame_at(kOneSecond_ns);
   marks.marks[0].stage = msg::Stage::correct;
   marks.marks[0].detail = msg::with_rung(msg::with_rung(0, msg::Side::left, msg::Rung::hold),
                                          msg::Side::right, msg::Rung::registered);
@@ -59,7 +59,7 @@ TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
 TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
   Ledger ledger;
   EXPECT_FALSE(ledger.light().source);
-  auto marks = frame_at(kSecond_ns);
+  auto marks = frame_at(kOneSecond_ns);
   marks.marks[0].stage = msg::Stage::light;
   for (const std::uint32_t refreshes : {0u, 1u, 4u, 1u, 2u}) {
     marks.marks[0].detail = msg::detail_of({msg::LightSource::kernel, refreshes});
@@ -76,7 +76,7 @@ TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
 
 TEST(Ledger, LostImagesAreCountedByReason) {
   Ledger ledger;
-  auto marks = frame_at(kSecond_ns);
+  auto marks = frame_at(kOneSecond_ns);
   marks.marks[0].stage = msg::Stage::capture;
   for (const msg::FrameLosses& lost :
        {msg::FrameLosses{1, 2, 3, 4}, {}, {.skipped = 10}, {.missing = 1000}}) {
@@ -94,7 +94,7 @@ TEST(Ledger, LostImagesAreCountedByReason) {
 
 TEST(Ledger, FaultsOfTheTrackerAreCountedByKind) {
   Ledger ledger;
-  auto marks = frame_at(kSecond_ns);
+  auto marks = frame_at(kOneSecond_ns);
   marks.marks[0].stage = msg::Stage::sample;
   msg::TrackerFaults faults;
   faults.of(msg::TrackerFault::frozen) = 1;
@@ -115,7 +115,7 @@ TEST(Ledger, FaultsOfTheTrackerAreCountedByKind) {
 
 TEST(Ledger, EachDetectorSaysWhetherItIsTheFallback) {
   Ledger ledger;
-  auto marks = frame_at(kSecond_ns);
+  auto marks = frame_at(kOneSecond_ns);
   marks.marks[0].stage = msg::Stage::detect;
   marks.marks[0].detail = msg::detail_of(msg::DetectorNote{.is_fallback = true});
   ledger.add("landmarks2", marks);
@@ -133,7 +133,7 @@ TEST(Ledger, EachDetectorSaysWhetherItIsTheFallback) {
 TEST(Ledger, TheDriftOfTheTrackerIsThatOfItsNewestSample) {
   Ledger ledger;
   EXPECT_EQ(ledger.tracker_drift().places, 0u);
-  auto marks = frame_at(kSecond_ns);
+  auto marks = frame_at(kOneSecond_ns);
   marks.marks[0].stage = msg::Stage::watch;
   marks.marks[0].detail = msg::detail_of(msg::DriftNote{true, 9, 5, 1});
   ledger.add("pose", marks);
@@ -157,62 +157,62 @@ TEST(LightNote, ManyRefreshesDoNotChangeTheSource) {
 
 TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
   Ledger ledger;
-  const auto start = 100 * kSecond_ns;
+  const auto start = 100 * kOneSecond_ns;
   for (int i = 0; i < 400; ++i)
     ledger.add("camera", frame_at(start + i * 10 * kMs_ns));  // 100 Hz for 4 s
-  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 4 * kSecond_ns), 100, 1);
-  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 5 * kSecond_ns), 50, 1)
+  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 4 * kOneSecond_ns), 100, 1);
+  EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 5 * kOneSecond_ns), 50, 1)
       << "nothing came for a second";
-  EXPECT_EQ(ledger.frames("camera").recent_hz(start + 9 * kSecond_ns), 0);
+  EXPECT_EQ(ledger.frames("camera").recent_hz(start + 9 * kOneSecond_ns), 0);
   EXPECT_EQ(ledger.frames("nobody").recent_hz(start), 0);
 }
 
 TEST(Ledger, TheHeldRateLeavesOutTheFirstSecondAndCountsInterruptions) {
   Ledger ledger;
-  const auto start = 100 * kSecond_ns;
+  const auto start = 100 * kOneSecond_ns;
   ledger.add("camera", frame_at(start));  // a slow first second: one frame
   for (int i = 0; i < 200; ++i)
-    ledger.add("camera", frame_at(start + kSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
-  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 3 * kSecond_ns), 100, 0.5);
-  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 5 * kSecond_ns), 50, 0.5)
+    ledger.add("camera", frame_at(start + kOneSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
+  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 3 * kOneSecond_ns), 100, 0.5);
+  EXPECT_NEAR(ledger.frames("camera").held_hz(start + 5 * kOneSecond_ns), 50, 0.5)
       << "silent for the last two of four seconds";
 }
 
 TEST(Ledger, FramesWhoseMarksWereOverwrittenAreCounted) {
   Ledger ledger;
-  const auto start = 100 * kSecond_ns;
+  const auto start = 100 * kOneSecond_ns;
   for (int i = 0; i <= 40; ++i)
     ledger.add("projector", frame_at(start + i * 100 * kMs_ns),
                i > 0 ? 89 : 0);  // 900 Hz, one in 90 seen
   EXPECT_EQ(ledger.frames("projector").total(), 40u * 90 + 1);
-  EXPECT_NEAR(ledger.frames("projector").recent_hz(start + 4 * kSecond_ns), 900, 10);
-  EXPECT_NEAR(ledger.frames("projector").held_hz(start + 4 * kSecond_ns), 900, 35)
+  EXPECT_NEAR(ledger.frames("projector").recent_hz(start + 4 * kOneSecond_ns), 900, 10);
+  EXPECT_NEAR(ledger.frames("projector").held_hz(start + 4 * kOneSecond_ns), 900, 35)
       << "to within one read";
 }
 
 TEST(Ledger, TheNewestAgeIsThatOfTheLastFramesOrigin) {
   Ledger ledger;
-  ledger.add("pose", frame_at(kSecond_ns));
-  EXPECT_DOUBLE_EQ(ledger.frames("pose").newest_age_ms(kSecond_ns + 3 * kMs_ns).value(), 8.0);
-  EXPECT_FALSE(ledger.frames("camera").newest_age_ms(kSecond_ns).has_value());
+  ledger.add("pose", frame_at(kOneSecond_ns));
+  EXPECT_DOUBLE_EQ(ledger.frames("pose").newest_age_ms(kOneSecond_ns + 3 * kMs_ns).value(), 8.0);
+  EXPECT_FALSE(ledger.frames("camera").newest_age_ms(kOneSecond_ns).has_value());
 }
 
 TEST(Ledger, StageTimesForgetWhatIsOlderThanTenSecondsButTheWholeRunDoesNot) {
   Ledger ledger;
   for (int second = 0; second < 30; ++second)
     ledger.add("projector",
-               frame_at((100 + second) * kSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
+               frame_at((100 + second) * kOneSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
   const auto& draw = ledger.stages().at("draw");
   EXPECT_EQ(draw.whole_run().count(), 30u);
-  EXPECT_EQ(draw.recent(129 * kSecond_ns).count(), 10u);
-  EXPECT_LT(draw.recent(129 * kSecond_ns).percentile_ns(0.99), 2e6);
+  EXPECT_EQ(draw.recent(129 * kOneSecond_ns).count(), 10u);
+  EXPECT_LT(draw.recent(129 * kOneSecond_ns).percentile_ns(0.99), 2e6);
   EXPECT_GT(draw.whole_run().percentile_ns(0.99), 7e6);
-  EXPECT_EQ(draw.recent(150 * kSecond_ns).count(), 0u);
+  EXPECT_EQ(draw.recent(150 * kOneSecond_ns).count(), 0u);
 }
 
 TEST(Ledger, ImpossibleMarksFromSharedMemoryAreLeftOut) {
   Ledger ledger;
-  auto marks = frame_at(kSecond_ns);
+  auto marks = frame_at(kOneSecond_ns);
   marks.count = 4'000'000'000u;
   marks.marks.fill({.stage = static_cast<msg::Stage>(77), .detail = 0, .begin_ns = 0, .end_ns = 0});
   ledger.add("camera", marks);

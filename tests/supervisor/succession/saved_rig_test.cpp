@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::SizeIs;
 
-SavedRig desk() {
+SavedRig saved_desk() {
   return {.name = "desk",
           .rig_file = "/rigs/desk.toml",
           .settings = {"camera.rate_hz=60", "name=\"desk\""},
@@ -30,18 +30,18 @@ void expect_invalid(const std::string& text, std::string_view why) {
 }
 
 std::string with(const std::string& from, const std::string& to) {
-  auto changed = print_saved(desk());
+  auto changed = print_saved(saved_desk());
   const auto at = changed.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return changed.replace(at, from.size(), to);
 }
 
 TEST(SavedRig, WhatIsPrintedIsParsedAgain) {
-  const auto parsed = parse_saved(print_saved(desk()), "desk");
+  const auto parsed = parse_saved(print_saved(saved_desk()), "desk");
   ASSERT_TRUE(parsed) << parsed.error().what;
   const auto& rig = *parsed;
   EXPECT_EQ(rig.rig_file, "/rigs/desk.toml");
-  EXPECT_EQ(rig.settings, desk().settings);
+  EXPECT_EQ(rig.settings, saved_desk().settings);
   EXPECT_EQ(rig.out, "/tmp/out");
   EXPECT_EQ(rig.applied, "name = \"desk\"\n");
   EXPECT_EQ(rig.epoch_ns, 42);
@@ -60,7 +60,7 @@ TEST(SavedRig, WhatIsPrintedIsParsedAgain) {
 }
 
 TEST(SavedRig, AnIncompleteTextIsAnErrorAtEveryLength) {
-  const auto whole = print_saved(desk());
+  const auto whole = print_saved(saved_desk());
   for (std::size_t length = 0; length < whole.size(); ++length)
     EXPECT_FALSE(parse_saved(whole.substr(0, length), "desk")) << length;
 }

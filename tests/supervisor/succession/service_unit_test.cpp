@@ -15,7 +15,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-UnitSpec desk(bool system) {
+UnitSpec unit_of_desk(bool system) {
   return {.rig = "desk",
           .program = "/bin/true",
           .rig_file = "/rigs/desk.toml",
@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(ServiceUnit, EachUnit, testing::Values(false, true),
                          [](const auto& instance) { return instance.param ? "system" : "user"; });
 
 TEST_P(EachUnit, LetsTheServicesOutliveTheirSupervisor) {
-  const auto text = unit_text(desk(GetParam()));
+  const auto text = unit_text(unit_of_desk(GetParam()));
   EXPECT_THAT(text, AllOf(HasSubstr("\nKillMode=process\n"), HasSubstr("\nOOMPolicy=continue\n"),
                           HasSubstr("\nFileDescriptorStoreMax="),
                           HasSubstr("\nExecStop=-\"/bin/true\" down --rig desk\n")));
@@ -42,7 +42,7 @@ TEST_P(EachUnit, LetsTheServicesOutliveTheirSupervisor) {
 }
 
 TEST_P(EachUnit, WatchesAndReplacesTheSupervisorUnlessAPersonMustAct) {
-  const auto text = unit_text(desk(GetParam()));
+  const auto text = unit_text(unit_of_desk(GetParam()));
   EXPECT_THAT(text, AllOf(HasSubstr("\nType=notify\nNotifyAccess=main\nExecStart=\"/bin/true\" up "
                                     "--no-keeper \"/rigs/desk.toml\" "),
                           HasSubstr("\nWatchdogSec="), HasSubstr("\nRestart=always\n"),
@@ -50,7 +50,7 @@ TEST_P(EachUnit, WatchesAndReplacesTheSupervisorUnlessAPersonMustAct) {
 }
 
 TEST_P(EachUnit, LeavesCamerasAndRealTimeAlone) {
-  const auto text = unit_text(desk(GetParam()));
+  const auto text = unit_text(unit_of_desk(GetParam()));
   for (const auto* closed : {"PrivateDevices=", "DeviceAllow=", "ProtectClock=", "PrivateNetwork=",
                              "RestrictRealtime=", "MemoryDenyWriteExecute="})
     EXPECT_THAT(text, Not(HasSubstr(std::string("\n") + closed)));
@@ -58,13 +58,13 @@ TEST_P(EachUnit, LeavesCamerasAndRealTimeAlone) {
 }
 
 TEST_P(EachUnit, HasNoMarkLeft) {
-  EXPECT_THAT(unit_text(desk(GetParam())),
+  EXPECT_THAT(unit_text(unit_of_desk(GetParam())),
               AllOf(Not(testing::ContainsRegex("@[A-Z_]+@")), Not(HasSubstr("#system#")),
                     Not(HasSubstr("#user#"))));
 }
 
 TEST_P(EachUnit, KeepsItsFilesInAFolderOfItsOwnOrInThatOfOut) {
-  auto spec = desk(GetParam());
+  auto spec = unit_of_desk(GetParam());
   EXPECT_THAT(unit_text(spec), AllOf(HasSubstr("\nStateDirectory=handcast/desk\n"),
                                      HasSubstr(" --out \"%S/handcast/desk\"\n"),
                                      Not(HasSubstr("ReadWritePaths=\""))));
@@ -79,7 +79,7 @@ TEST_P(EachUnit, KeepsItsFilesInAFolderOfItsOwnOrInThatOfOut) {
 }
 
 TEST_P(EachUnit, StopsWhatIsLeftAfterAStopThatTookTooLongAndNothingAfterACrash) {
-  EXPECT_THAT(unit_text(desk(GetParam())),
+  EXPECT_THAT(unit_text(unit_of_desk(GetParam())),
               HasSubstr("\nExecStopPost=-/bin/sh -c '[ \"$$SERVICE_RESULT\" != timeout ] || exec "
                         "\"$$@\"' sh \"/bin/true\" down --rig desk\n"));
 }
@@ -97,7 +97,7 @@ bool can_analyze() { return std::filesystem::exists("/usr/bin/systemd-analyze");
 
 TEST_P(EachUnit, IsAcceptedBySystemd) {
   if (!can_analyze()) GTEST_SKIP() << "systemd-analyze is not installed";
-  auto spec = desk(GetParam());
+  auto spec = unit_of_desk(GetParam());
   for (const char* out : {"", "/show/100% \"$kept\""}) {
     spec.out = out;
     EXPECT_THAT(analyzed("verify --man=no --recursive-errors=no", spec),
@@ -108,21 +108,21 @@ TEST_P(EachUnit, IsAcceptedBySystemd) {
 
 TEST(ServiceUnit, OfTheMachineIsAtMostThreeOfTenExposed) {
   if (!can_analyze()) GTEST_SKIP() << "systemd-analyze is not installed";
-  EXPECT_THAT(analyzed("security --offline=true --threshold=30 --no-pager", desk(true)),
+  EXPECT_THAT(analyzed("security --offline=true --threshold=30 --no-pager", unit_of_desk(true)),
               HasSubstr("exit 0"));
 }
 
 TEST(ServiceUnit, OfTheMachineIsShutInAndHasAUser) {
-  const auto text = unit_text(desk(true));
+  const auto text = unit_text(unit_of_desk(true));
   EXPECT_THAT(text,
               AllOf(HasSubstr("\nProtectSystem=strict\n"), HasSubstr("\nUser=daemon\n"),
                     HasSubstr("\nSupplementaryGroups=video\n"), HasSubstr("\nOOMScoreAdjust=-"),
                     HasSubstr("\nWantedBy=multi-user.target\n"), Not(HasSubstr("default.target"))));
-  EXPECT_EQ(unit_folder(desk(true)), "/etc/systemd/system");
+  EXPECT_EQ(unit_folder(unit_of_desk(true)), "/etc/systemd/system");
 }
 
 TEST(ServiceUnit, OfAUserAsksForNothingAUserCannotHave) {
-  const auto text = unit_text(desk(false));
+  const auto text = unit_text(unit_of_desk(false));
   EXPECT_THAT(text,
               AllOf(Not(HasSubstr("\nProtectSystem=")), Not(HasSubstr("\nUser=")),
                     Not(HasSubstr("\nSupplementaryGroups=")), Not(HasSubstr("\nOOMScoreAdjust=")),
@@ -130,7 +130,7 @@ TEST(ServiceUnit, OfAUserAsksForNothingAUserCannotHave) {
 }
 
 TEST(ServiceUnit, PathsAndSettingsReachTheCommandAsTheyAre) {
-  auto spec = desk(false);
+  auto spec = unit_of_desk(false);
   spec.rig_file = "/my rigs/100% $HOME/a\"b\\c.toml";
   spec.settings = {"name=\"sofa\""};
   EXPECT_THAT(

@@ -16,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-SavedRig desk(std::int64_t epoch_ns) {
+SavedRig desk_since(std::int64_t epoch_ns) {
   SavedRig rig{.name = "desk", .epoch_ns = epoch_ns};
   rig.services.push_back({.name = "pose", .pid = 4711});
   return rig;
@@ -32,7 +32,7 @@ TEST(StateMemory, TheLastStateIsLoadedElsewhere) {
   auto memory = StateMemory::create().value();
   EXPECT_FALSE(memory.load("desk"));  // nothing is saved
   for (const auto epoch_ns : {41, 42, 43}) {
-    ASSERT_TRUE(memory.save(desk(epoch_ns)));
+    ASSERT_TRUE(memory.save(desk_since(epoch_ns)));
     EXPECT_EQ(elsewhere(memory).load("desk").value().epoch_ns, epoch_ns);
   }
   EXPECT_FALSE(memory.load("sofa"));
@@ -48,8 +48,8 @@ TEST(StateMemory, ItsPagesAreReservedAndItsSizeIsFixed) {
 
 TEST(StateMemory, AStateThatIsTooLargeIsAnErrorAndTheOldOneStays) {
   auto memory = StateMemory::create().value();
-  ASSERT_TRUE(memory.save(desk(42)));
-  auto large = desk(43);
+  ASSERT_TRUE(memory.save(desk_since(42)));
+  auto large = desk_since(43);
   large.applied.assign(1 << 20, 'x');
   const auto saved = memory.save(large);
   ASSERT_FALSE(saved);
@@ -75,12 +75,12 @@ TEST(StateMemory, AnotherFileIsNotMistakenForIt) {
 // A process saves as fast as it can and is killed; what is left is one of the states, whole.
 TEST(StateMemory, AKilledWriterLeavesAWholeState) {
   auto memory = StateMemory::create().value();
-  ASSERT_TRUE(memory.save(desk(1)));
+  ASSERT_TRUE(memory.save(desk_since(1)));
   std::int64_t newest_ns = 1;
   for (int round = 0; round < 30; ++round) {
     const pid_t writer = fork();
     if (writer == 0)
-      for (std::int64_t epoch_ns = 2;; ++epoch_ns) (void)memory.save(desk(epoch_ns));
+      for (std::int64_t epoch_ns = 2;; ++epoch_ns) (void)memory.save(desk_since(epoch_ns));
     usleep(static_cast<useconds_t>(500 + 170 * round));
     kill(writer, SIGKILL);
     waitpid(writer, nullptr, 0);

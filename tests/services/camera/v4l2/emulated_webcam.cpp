@@ -6,7 +6,7 @@
 namespace handcast::test {
 namespace {
 
-[[maybe_unused]] const bool is_hidden = [] {
+[[maybe_unused]] const bool webcam_is_hidden = [] {
   hide("/dev/video");
   return true;
 }();

@@ -21,7 +21,7 @@ std::unique_ptr<Twin> scene(config::TwinImage settings, const char* motion = "bu
   return twin_of(rig);
 }
 
-Image<std::uint8_t> shot(const Twin& twin, std::uint64_t k) {
+Image<std::uint8_t> shot_with(const Twin& twin, std::uint64_t k) {
   Image<std::uint8_t> image(720, 540);
   twin.camera_image(k, image.view());
   return image;
@@ -29,7 +29,7 @@ Image<std::uint8_t> shot(const Twin& twin, std::uint64_t k) {
 
 /// An image of a still hand.
 Image<std::uint8_t> picture(const config::TwinImage& settings, int seed = 1) {
-  return shot(*scene(settings, "builtin:still", seed), 0);
+  return shot_with(*scene(settings, "builtin:still", seed), 0);
 }
 
 /// The image without any of the settings.
@@ -134,7 +134,7 @@ TEST(ImageSetting, ATableShowsAnImageThatMovesWithTheHand) {
   const auto bare = scene({}, "builtin:wave"), glossy = scene({.table = 0.3}, "builtin:wave");
   double least = 720, most = 0;
   for (const std::uint64_t k : {0, 100, 200, 300}) {
-    const auto without = shot(*bare, k), with = shot(*glossy, k);
+    const auto without = shot_with(*bare, k), with = shot_with(*glossy, k);
     double x_sum = 0, count = 0;
     for (int y = 0; y < 540; ++y)
       for (int x = 0; x < 720; ++x)
@@ -149,7 +149,7 @@ TEST(ImageSetting, ATableShowsAnImageThatMovesWithTheHand) {
 TEST(ImageSetting, TheLeakIsBoundToTheSurface) {
   const auto dark = scene({}, "builtin:reverse"), leaking = scene({.leak = 0.5}, "builtin:reverse");
   const auto stripes_along_bones = [&](std::uint64_t k) {
-    const auto plain = shot(*dark, k), striped = shot(*leaking, k);
+    const auto plain = shot_with(*dark, k), striped = shot_with(*leaking, k);
     std::vector<double> ratios;
     const auto points = *dark->landmarks(Side::left, dark->camera_origin_ns(k));
     for (int i = 1; i < msg::kLandmarks; ++i)
@@ -173,7 +173,7 @@ TEST(ImageSetting, TheLeakIsBoundToTheSurface) {
 
 TEST(ImageSetting, TheSecondPersonIsInTheImageAndNobodysTruth) {
   const auto two = scene({.second_person = true});
-  const auto image = shot(*two, 0);
+  const auto image = shot_with(*two, 0);
   int at_edge = 0, elsewhere = 0;
   for (int y = 0; y < 540; ++y)
     for (int x = 0; x < 720; ++x)
@@ -189,7 +189,7 @@ TEST(ImageSetting, AHeldObjectMovesWithTheHand) {
   const auto empty = scene({}, "builtin:reverse"),
              full = scene({.object = true}, "builtin:reverse");
   const auto middle_x = [&](std::uint64_t k) {
-    const auto bare = shot(*empty, k), held = shot(*full, k);
+    const auto bare = shot_with(*empty, k), held = shot_with(*full, k);
     double sum = 0, count = 0;
     for (int y = 0; y < 540; ++y)
       for (int x = 0; x < 720; ++x)
@@ -214,8 +214,8 @@ TEST(ImageSetting, WithAllOfThemTwoTwinsStillAgree) {
                               .second_person = true,
                               .object = true};
   const auto first = scene(all, "builtin:wave"), second = scene(all, "builtin:wave");
-  shot(*first, 7);  // what was drawn before must not matter
-  EXPECT_EQ(shot(*first, 40).pixels(), shot(*second, 40).pixels());
+  shot_with(*first, 7);  // what was drawn before must not matter
+  EXPECT_EQ(shot_with(*first, 40).pixels(), shot_with(*second, 40).pixels());
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace handcast::recording {
 namespace {
 
 using renderer::JointFrames, renderer::Side;
-using twin::Articulation, twin::Bend, twin::outside_data;
+using twin::Articulation, twin::Bend, twin::outside_data, twin::place;
 
 using std::filesystem::path;
 using testing::HasSubstr;

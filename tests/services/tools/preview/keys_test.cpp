@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "services/tools/preview/keys.hpp"
+
 #include <gtest/gtest.h>
 
 #include <string>
-
-#include "services/tools/preview/live.hpp"
 
 namespace handcast::preview {
 namespace {
