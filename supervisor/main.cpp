@@ -36,11 +36,6 @@ void print_overview() {
       "  handcast up rig.toml runs it; in a second terminal, `handcast preview` shows it\n");
 }
 
-const VerbEntry* find_verb(const std::string& name) {
-  const auto found = std::ranges::find(verbs(), name, &VerbEntry::name);
-  return found == verbs().end() ? nullptr : &*found;
-}
-
 /// Executes handcast-VERB in place of this process. Returns only if there is no such program.
 int become_program(const std::string& verb, const Arguments& arguments) {
   const bool plain = verb.find('/') == std::string::npos;
@@ -56,8 +51,9 @@ int become_program(const std::string& verb, const Arguments& arguments) {
         kExitConfig,
         fmt::format("the program of this verb, {}, is missing; `scripts/build` builds all",
                     program));
-  const auto names = verb_names();
-  const auto nearest = suggest(verb, {names.begin(), names.end()});
+  std::vector<std::string_view> names;
+  for (const auto& each : verbs()) names.push_back(each.name);
+  const auto nearest = suggest(verb, names);
   return complain(kExitUsage, fmt::format("there is no verb '{}'{}; there are: {}", verb, nearest,
                                           join(names, ", ")));
 }
@@ -68,10 +64,7 @@ int help(const Arguments& arguments) {
     return kExitDone;
   }
   const auto verb = find_verb(arguments.front());
-  if (!verb || !verb->run) return become_program(arguments.front(), {"--help"});
-  fmt::print("usage: handcast {}\n\n{}\n", verb->usage, verb->sentence);
-  if (!verb->options.empty()) fmt::print("\n{}", verb->options);
-  return kExitDone;
+  return verb && verb->run ? verb->run({"--help"}) : become_program(arguments.front(), {"--help"});
 }
 
 int dispatch(const std::string& name, const Arguments& arguments) {
@@ -81,9 +74,7 @@ int dispatch(const std::string& name, const Arguments& arguments) {
     return kExitDone;
   }
   const auto verb = find_verb(name);
-  if (!verb || !verb->run) return become_program(name, arguments);
-  if (std::ranges::find(arguments, "--help") != arguments.end()) return help({name});
-  return verb->run(arguments);
+  return verb && verb->run ? verb->run(arguments) : become_program(name, arguments);
 }
 
 }  // namespace

@@ -111,19 +111,16 @@ class Context {
   std::uint64_t complaints_ = 0;
 };
 
-/// The description of a daemon, completed with the settings that every daemon reads: calibration,
-/// name of its back end, [NAME.process].
-daemon::ServiceDescription complete(daemon::ServiceDescription description);
-
 /// Opens what a daemon opens at its start, but neither rings nor devices, and closes it again.
 using Check = std::function<Result<void>(const config::Rig&, const calib::Calibration&)>;
 
 /// A daemon as one of the services that its program can be: of a rig with two cameras, `camera` and
 /// `camera2` are instances of handcast-camera.
 struct Instance {
-  daemon::ServiceDescription description;  ///< need not be complete()
-  std::function<void(Context&)> body;      ///< its work
-  Check check{};                           ///< what --check does; null: nothing of its own
+  /// Without the settings that every daemon reads (calibration, NAME.backend, [NAME.process]).
+  daemon::ServiceDescription description;
+  std::function<void(Context&)> body;  ///< its work
+  Check check{};                       ///< what --check does; null: nothing of its own
 };
 
 /// The main function of all daemons: parses the command line, loads the rig and runs the body, or,

@@ -6,10 +6,9 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/control/control_client.hpp"
-#include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
-#include "supervisor/rig/status_text.hpp"
+#include "supervisor/look/figures/figures.hpp"
 #include "supervisor/succession/stop_rig.hpp"
 
 namespace handcast::supervisor {
@@ -66,19 +65,19 @@ std::string print_reload(const nlohmann::json& answer) {
   return done + print_swaps(answer);
 }
 
-/// Runs a verb whose arguments are `words`: SERVICE, and perhaps BACKEND. Prints `done` on success,
-/// with {0} for the service and {1} for the back end.
-int ask_with_words(const char* verb, const Arguments& arguments,
-                   const std::vector<std::string_view>& words, control::Request request,
-                   const char* done) {
-  const auto options =
-      sort_options(arguments, {.with_value = {"--rig"}, .flags = {}, .words = words});
-  if (!options)
-    return complain(kExitUsage,
-                    fmt::format("{0}: {1}; `handcast help {0}`", verb, options.error().what));
-  request.service = options->words[0];
-  if (words.size() > 1) request.backend = options->words[1];
-  const auto [exit_code, answer] = send(options->value("--rig"), request);
+/// Runs a verb about a service. Prints `done` on success, with {0} for the service and {1} for the
+/// back end.
+int ask_about_service(CommandLine line, const Arguments& arguments, control::Verb verb,
+                      const char* done) {
+  control::Request request{.verb = verb, .service = {}, .backend = {}};
+  std::string rig;
+  line.add("SERVICE", request.service, "As `handcast status` lists it");
+  if (verb == control::Verb::swap)
+    line.add("BACKEND", request.backend,
+             "config/REFERENCE.md lists them; a wrong word prints those of the service");
+  add_rig(line, rig);
+  if (const auto code = line.answered(arguments)) return *code;
+  const auto [exit_code, answer] = send(rig, request);
   if (exit_code != kExitDone) return exit_code;
   fmt::print("{}", fmt::format(fmt::runtime(done), request.service, request.backend));
   if (answer.contains("pause_ms"))
@@ -90,46 +89,51 @@ int ask_with_words(const char* verb, const Arguments& arguments,
 }  // namespace
 
 int run_down(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}});
-  if (!options)
-    return complain(kExitUsage, "down: " + options.error().what + "; `handcast help down`");
-  const auto rig = choose_rig_to_stop(options->value("--rig"));
+  auto line = command_line_of("down");
+  std::string name;
+  add_rig(line, name);
+  if (const auto code = line.answered(arguments)) return *code;
+  const auto rig = choose_rig_to_stop(name);
   if (!rig) return complain(rig.error());
   const auto stopped = stop_rig(*rig);
   if (!stopped) return complain(stopped.error());
   fmt::print("{}\n", describe(*stopped, *rig));
   return kExitDone;
 }
+
 int run_restart(const Arguments& arguments) {
-  return ask_with_words("restart", arguments, {"SERVICE"},
-                        {.verb = control::Verb::restart, .service = {}, .backend = {}},
-                        "{0} is ready again");
+  return ask_about_service(command_line_of("restart"), arguments, control::Verb::restart,
+                           "{0} is ready again");
 }
+
 int run_swap(const Arguments& arguments) {
-  return ask_with_words("swap", arguments, {"SERVICE", "BACKEND"},
-                        {.verb = control::Verb::swap, .service = {}, .backend = {}},
-                        "{0} is ready with '{1}'");
+  return ask_about_service(command_line_of("swap"), arguments, control::Verb::swap,
+                           "{0} is ready with '{1}'");
 }
 
 int run_reload(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {}});
-  if (!options)
-    return complain(kExitUsage, "reload: " + options.error().what + "; `handcast help reload`");
+  auto line = command_line_of("reload");
+  std::string rig;
+  add_rig(line, rig);
+  if (const auto code = line.answered(arguments)) return *code;
   const auto [exit_code, answer] =
-      send(options->value("--rig"), {.verb = control::Verb::reload, .service = {}, .backend = {}});
+      send(rig, {.verb = control::Verb::reload, .service = {}, .backend = {}});
   if (exit_code == kExitDone) fmt::print("{}\n", print_reload(answer));
   return exit_code;
 }
 
 int run_status(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--rig"}, .flags = {"--json"}});
-  if (!options)
-    return complain(kExitUsage, "status: " + options.error().what + "; `handcast help status`");
+  auto line = command_line_of("status");
+  std::string rig;
+  bool as_json = false;
+  line.add("--json", as_json, "The same as JSON");
+  add_rig(line, rig);
+  if (const auto code = line.answered(arguments)) return *code;
   auto [exit_code, answer] =
-      send(options->value("--rig"), {.verb = control::Verb::status, .service = {}, .backend = {}});
+      send(rig, {.verb = control::Verb::status, .service = {}, .backend = {}});
   if (exit_code != kExitDone) return exit_code;
   const auto& status = answer["status"];
-  fmt::print("{}", options->has("--json") ? status.dump(2) + "\n" : print_status(status));
+  fmt::print("{}", as_json ? status.dump(2) + "\n" : print_status(figures_in(status)));
   return kExitDone;
 }
 

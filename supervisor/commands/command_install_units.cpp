@@ -10,23 +10,21 @@
 #include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "ipc/control/rig_address.hpp"
-#include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/succession/service_unit.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
-/// The user of a system unit: that of --user, else with sudo the user who called it, else this one.
-/// Errors: bad_config (there is no such user; it would be root, and --user does not say so).
-Result<std::string> user_of(const Options& options) {
-  if (!options.has("--system")) return std::string();
-  std::string name = options.value("--user");
+/// The user of a system unit: `name` of --user, else with sudo the user who called it, else this
+/// one. Errors: bad_config (there is no such user; it would be root, and --user does not say so).
+Result<std::string> user_of(std::string name) {
+  const bool is_named = !name.empty();
   if (const char* caller = std::getenv("SUDO_USER"); name.empty() && caller) name = caller;
   const auto* entry = name.empty() ? getpwuid(getuid()) : getpwnam(name.c_str());
   if (!entry)
     return fail(Errc::bad_config, fmt::format("install-units: there is no user '{}'", name));
-  if (entry->pw_uid == 0 && !options.has("--user"))
+  if (entry->pw_uid == 0 && !is_named)
     return fail(Errc::bad_config,
                 "install-units: the rig would run as root; --user NAME names another user "
                 "(`--user root` if it must be root)");
@@ -59,37 +57,33 @@ void print_next_steps(const UnitSpec& spec) {
 }  // namespace
 
 int run_install_units(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--set", "--out", "--user"},
-                                                .flags = {"--system", "--print"},
-                                                .words = {"RIG.toml"}});
-  if (!options)
-    return complain(kExitUsage,
-                    "install-units: " + options.error().what + "; `handcast help install-units`");
-  const auto rig_file = std::filesystem::absolute(options->words.front());
-  const auto rig = config::load_rig(rig_file, options->all("--set"));
+  auto line = command_line_of("install-units");
+  UnitSpec spec{.program = program_folder() / "handcast", .groups = device_groups()};
+  bool only_print = false;
+  line.add("RIG.toml", spec.rig_file, "The rig file");
+  line.add("--set path=value", spec.settings, "As for `handcast up`");
+  line.add("--out DIR", spec.out,
+           "As for `handcast up`; default: a folder of the unit, /var/lib/handcast/NAME with "
+           "--system");
+  line.add("--system", spec.system, "A unit of the machine instead of one of this user");
+  line.add("--user NAME", spec.user, "The user as which it runs; default: the one who calls sudo");
+  line.add("--print", only_print, "Prints the unit and writes nothing");
+  if (const auto code = line.answered(arguments)) return *code;
+  spec.rig_file = std::filesystem::absolute(spec.rig_file);
+  const auto rig = config::load_rig(spec.rig_file, spec.settings);
   if (!rig) return complain(rig.error());
   if (const auto named = control::address_of(rig->name); !named) return complain(named.error());
+  spec.rig = rig->name;
 
-  if (options->has("--user") && !options->has("--system"))
-    return complain(kExitUsage, "install-units: --user needs --system");
-  auto user = user_of(*options);
-  if (!user) return complain(user.error());
-  std::filesystem::path out;
-  if (options->has("--out")) {
-    if (options->value("--out").empty())
-      return complain(kExitUsage, "install-units: --out needs the name of a folder");
-    out = std::filesystem::absolute(options->value("--out"));
+  if (!spec.user.empty() && !spec.system) return line.refuse("--user needs --system");
+  if (spec.system) {
+    const auto user = user_of(spec.user);
+    if (!user) return complain(user.error());
+    spec.user = *user;
   }
-  const UnitSpec spec{.rig = rig->name,
-                      .program = program_folder() / "handcast",
-                      .rig_file = rig_file,
-                      .settings = options->all("--set"),
-                      .out = out,
-                      .system = options->has("--system"),
-                      .user = *user,
-                      .groups = device_groups()};
+  if (!spec.out.empty()) spec.out = std::filesystem::absolute(spec.out);
   const auto text = unit_text(spec);
-  if (options->has("--print")) {
+  if (only_print) {
     fmt::print("{}", text);
     return kExitDone;
   }

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "config/rig.hpp"
-#include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
 
 namespace handcast::supervisor {
@@ -74,12 +73,20 @@ std::string live_device(const fs::path& folder, const fs::path& rig_file,
 }  // namespace
 
 int run_play(const Arguments& arguments) {
-  const auto options = sort_options(
-      arguments, {.with_value = {"--set", "--seconds", "--out"}, .flags = {}, .words = {"DIR"}});
-  if (!options)
-    return complain(kExitUsage, "play: " + options.error().what + "; `handcast help play`");
+  auto line = command_line_of("play");
+  std::string recording, out;
+  std::vector<std::string> own;
+  double seconds = 0;
+  line.add("DIR", recording,
+           "A folder of `handcast record`; played in a loop, with the rig's settings and "
+           "calibration. Streams that were not recorded come from the rig's own sensors");
+  line.add("--set path=value", own,
+           "As for `handcast up`: projector.backend=file where there is no projector");
+  line.add("--seconds N", seconds, "Stops after N seconds", kSomeSeconds);
+  line.add("--out DIR", out, "As for `handcast up`");
+  if (const auto code = line.answered(arguments)) return *code;
   std::error_code error;
-  const auto folder = fs::absolute(options->words.front(), error).lexically_normal();
+  const auto folder = fs::absolute(recording, error).lexically_normal();
   const auto rig = folder / "rig.toml";
   if (!fs::exists(rig, error))
     return complain(kExitConfig,
@@ -88,14 +95,13 @@ int run_play(const Arguments& arguments) {
                                 "config/rigs/replay.toml",
                                 rig.string(), folder.string()));
   auto settings = settings_for(folder);
-  const auto own = options->all("--set");  // after those, so that they count
-  settings.insert(settings.end(), own.begin(), own.end());
+  settings.insert(settings.end(), own.begin(), own.end());  // after those, so that they count
   if (const auto device = live_device(folder, rig, settings); !device.empty())
     return complain(kExitConfig, "play: " + device);
   Arguments up{rig.string()};
   for (const auto& setting : settings) up.insert(up.end(), {"--set", setting});
-  for (const auto* option : {"--seconds", "--out"})
-    for (const auto& value : options->all(option)) up.insert(up.end(), {option, value});
+  if (seconds > 0) up.push_back(fmt::format("--seconds={}", seconds));
+  if (!out.empty()) up.push_back("--out=" + out);
   return run_up(up);
 }
 

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <deque>
+#include <nlohmann/json.hpp>
 
 #include "ipc/base/clock.hpp"
-#include "supervisor/base/options.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/look/top/top_layout.hpp"
@@ -24,7 +24,7 @@ int show_once(const std::string& rig, bool as_json) {
   const auto before = watcher.observe();
   if (before.missing.empty()) sleep_until_ns(before.taken_ns + kOnce_ns);
   const auto now = watcher.observe();
-  if (now.status.is_null()) return complain(kExitRetry, now.missing);
+  if (!now.figures) return complain(kExitRetry, now.missing);
 
   const auto model = compare(before, now);
   if (as_json) {
@@ -105,14 +105,17 @@ int show_until_quit(const std::string& rig) {
 }  // namespace
 
 int run_top(const Arguments& arguments) {
-  const auto options =
-      sort_options(arguments, {.with_value = {"--rig"}, .flags = {"--once", "--json"}});
-  if (!options)
-    return complain(kExitUsage, "top: " + options.error().what + "; `handcast help top`");
-  const auto rig = choose_rig(options->value("--rig"));
+  auto line = command_line_of("top");
+  bool once = false, as_json = false;
+  std::string name;
+  line.add("--once", once, "Prints one look and ends");
+  line.add("--json", as_json, "Prints one look as JSON");
+  add_rig(line, name);
+  if (const auto code = line.answered(arguments)) return *code;
+  const auto rig = choose_rig(name);
   if (!rig) return complain(rig.error());
-  const bool once = options->has("--once") || options->has("--json") || !Terminal::present();
-  return once ? show_once(*rig, options->has("--json")) : show_until_quit(*rig);
+  if (once || as_json || !Terminal::present()) return show_once(*rig, as_json);
+  return show_until_quit(*rig);
 }
 
 }  // namespace handcast::supervisor

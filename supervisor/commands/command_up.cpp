@@ -6,7 +6,6 @@
 #include "ipc/base/log.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
-#include "supervisor/base/options.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/rig_runner.hpp"
@@ -16,8 +15,14 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::string_view kNoKeeper = "--no-keeper";  ///< for systemd, which acts as the keeper
-constexpr std::string_view kKept = "--kept";           ///< added by the keeper
+/// The command line.
+struct Order {
+  std::filesystem::path rig_file, out;  ///< absolute; `out` may be empty
+  std::vector<std::string> settings;
+  double seconds = 0;      ///< 0: until it is stopped
+  bool no_keeper = false;  ///< for systemd, which acts as the keeper
+  bool kept = false;       ///< --kept, which the keeper adds
+};
 
 bool take_successor_mark() {
   const bool is_successor = std::getenv(kSuccessorVariable) != nullptr;
@@ -27,29 +32,26 @@ bool take_successor_mark() {
 
 /// Makes this process the keeper of the same command, whose files a successor finds even if the
 /// folder that it was started in is deleted.
-int keep_up(const Options& options) {
-  Arguments command{(program_folder() / "handcast").string(), "up",
-                    std::filesystem::absolute(options.words.front())};
-  for (const auto& setting : options.all("--set"))
-    command.insert(command.end(), {"--set", setting});
-  if (options.has("--seconds"))
-    command.insert(command.end(), {"--seconds", options.value("--seconds")});
-  if (options.has("--out"))
-    command.insert(command.end(), {"--out", std::filesystem::absolute(options.value("--out"))});
-  command.emplace_back(kKept);
+int keep_up(const Order& order) {
+  Arguments command{(program_folder() / "handcast").string(), "up", order.rig_file};
+  for (const auto& setting : order.settings) command.insert(command.end(), {"--set", setting});
+  if (order.seconds > 0) command.push_back(fmt::format("--seconds={}", order.seconds));
+  if (!order.out.empty()) command.push_back("--out=" + order.out.string());
+  command.emplace_back("--kept");
   return keep(command);
 }
 
 /// The options of the command. Also passes the folder of --out on to the services.
-RunOptions run_options(const Options& options, std::optional<double> seconds) {
-  RunOptions run{.rig_file = std::filesystem::absolute(options.words.front()),
-                 .settings = options.all("--set"),
+RunOptions run_options(const Order& order) {
+  RunOptions run{.rig_file = order.rig_file,
+                 .settings = order.settings,
                  .program_folder = program_folder(),
-                 .seconds = seconds,
+                 .seconds = std::nullopt,
                  .out = {},
                  .is_successor = take_successor_mark()};
-  if (options.has("--out")) {
-    run.out = std::filesystem::absolute(options.value("--out"));
+  if (order.seconds > 0) run.seconds = order.seconds;
+  if (!order.out.empty()) {
+    run.out = order.out;
     setenv(daemon::kOutVariable, run.out->c_str(), 1);
   }
   return run;
@@ -82,19 +84,23 @@ int run(RunOptions options) {
 }  // namespace
 
 int run_up(const Arguments& arguments) {
-  const auto options = sort_options(arguments, {.with_value = {"--set", "--seconds", "--out"},
-                                                .flags = {kNoKeeper, kKept},
-                                                .words = {"RIG.toml"}});
-  if (!options) return complain(kExitUsage, "up: " + options.error().what + "; `handcast help up`");
+  auto line = command_line_of("up");
+  Order order;
+  line.add("RIG.toml", order.rig_file, "The rig file");
+  line.add("--set path=value", order.settings, "A setting that overrides that of the file");
+  line.add("--seconds N", order.seconds, "Stops after N seconds", kSomeSeconds);
+  line.add("--out DIR", order.out,
+           "Where files to be kept go: live.json with the times of all steps, observer.json with "
+           "the scores, pictures");
+  line.add("--no-keeper", order.no_keeper,
+           "Without the process that replaces a dead supervisor; systemd does that for a unit of "
+           "install-units");
+  line.add("--kept", order.kept, "");
+  if (const auto code = line.answered(arguments)) return *code;
   log::never_wait_for_stderr();
-  std::optional<double> seconds;
-  if (options->has("--seconds")) {
-    const auto parsed = parse_seconds(options->value("--seconds"));
-    if (!parsed) return complain(kExitUsage, "up: " + parsed.error().what);
-    seconds = *parsed;
-  }
-  if (!options->has(kKept) && !options->has(kNoKeeper)) return keep_up(*options);
-  return run(run_options(*options, seconds));
+  order.rig_file = std::filesystem::absolute(order.rig_file);
+  if (!order.out.empty()) order.out = std::filesystem::absolute(order.out);
+  return order.kept || order.no_keeper ? run(run_options(order)) : keep_up(order);
 }
 
 }  // namespace handcast::supervisor

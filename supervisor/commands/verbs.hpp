@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/result.hpp"
 
@@ -20,17 +21,22 @@ enum class VerbGroup { run, look, change, set_up, score };
 /// A row of the table of verbs.
 struct VerbEntry {
   std::string_view name;                ///< "up"
-  std::string_view usage;               ///< the command line after "handcast "
-  std::string_view sentence;            ///< its purpose, for `handcast help`
+  std::string_view sentence;            ///< its purpose
   int (*run)(const Arguments&);         ///< its function; null: the program handcast-NAME
   VerbGroup group = VerbGroup::set_up;  ///< its group
-  std::string_view options{};           ///< one line per option, for `handcast help VERB`
 };
 
 /// All verbs.
 std::span<const VerbEntry> verbs();
-/// The names of all verbs.
-std::vector<std::string> verb_names();
+/// The row of a verb; null if there is no such verb.
+const VerbEntry* find_verb(std::string_view name);
+
+/// The command line of a verb of the table, still without arguments.
+CommandLine command_line_of(std::string_view verb, std::string notes = "");
+/// Declares --rig.
+void add_rig(CommandLine& line, std::string& rig);
+/// The range of --seconds, which fits into an int64 of nanoseconds.
+inline constexpr CommandLine::Range kSomeSeconds{0.001, 1e9};
 
 /// The folder of this program, which also holds the daemons and the verbs that are programs.
 std::filesystem::path program_folder();

@@ -25,7 +25,7 @@ using Reply = ControlServer::Reply;
 void give_status(LiveRig& rig, const Reply& reply) {
   rig.recorder.poll();
   auto answer = success();
-  answer["status"] = status_of(rig.view());
+  answer["status"] = to_json(figures_of(rig.view()));
   reply(answer);
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ipc/base/clock.hpp"
 
@@ -15,20 +16,22 @@ using nlohmann::json;
 constexpr std::size_t kLastWords = 5;
 
 double rounded(double value) { return std::round(value * 100) / 100; }
-json or_null(std::optional<double> value) { return value ? json(rounded(*value)) : json(); }
+std::optional<double> rounded(std::optional<double> value) {
+  return value ? std::optional(rounded(*value)) : value;
+}
 
-json wanted_hz(const ServiceSpec& spec) {
+std::optional<double> wanted_hz(const ServiceSpec& spec) {
   const bool known =
       spec.wanted_hz > 0 && (spec.wanted_of.empty() || spec.wanted_of == spec.backend);
-  return known ? json(spec.wanted_hz) : json();
+  return known ? std::optional(rounded(spec.wanted_hz)) : std::nullopt;
 }
 
 bool is_well(const Service& service) {
   return service.state() == State::ready || service.state() == State::stopped;
 }
 
-/// Why a service is not well; null if it is.
-json reason_of(const Service& service) {
+/// Why a service is not well; "" if it is.
+std::string reason_of(const Service& service) {
   switch (service.state()) {
     case State::degraded:
       return fmt::format("died {} times within {:g} s", service.recent_deaths(),
@@ -51,21 +54,22 @@ const std::string& backend_of(const Service& service, const RigView& rig) {
   return is_on_fallback(service, rig) ? service.spec().fallback : service.spec().backend;
 }
 
-json service_status(const Service& service, const RigView& rig) {
+ServiceFigures figures_of(const Service& service, const RigView& rig) {
   const auto& exit = service.last_exit();
-  json status{{"state", name_of(service.state())},
-              {"pid", service.pid()},
-              {"standby", service.spare_pid() != 0 ? json(service.spare_pid()) : json()},
-              {"backend", backend_of(service, rig)},
-              {"instead_of", is_on_fallback(service, rig) ? json(service.spec().backend) : json()},
-              {"uptime_s", rounded(service.uptime_s(rig.now_ns))},
-              {"restarts", service.restarts()},
-              {"last_exit", exit ? json(exit->describe()) : json()},
-              {"reason", reason_of(service)},
-              {"retry_s", or_null(service.retry_s(rig.now_ns))},
-              {"silent_ms", or_null(rig.recorder.silence_ms(service.spec().name, rig.now_ns))}};
-  if (!is_well(service)) status["log"] = service.log().last(kLastWords);
-  return status;
+  ServiceFigures figures;
+  figures.state = name_of(service.state());
+  figures.backend = backend_of(service, rig);
+  if (is_on_fallback(service, rig)) figures.instead_of = service.spec().backend;
+  if (exit) figures.last_exit = exit->describe();
+  figures.reason = reason_of(service);
+  if (!is_well(service)) figures.log = service.log().last(kLastWords);
+  figures.pid = service.pid();
+  figures.spare_pid = service.spare_pid();
+  figures.restarts = service.restarts();
+  figures.uptime_s = rounded(service.uptime_s(rig.now_ns));
+  figures.retry_s = rounded(service.retry_s(rig.now_ns));
+  figures.silent_ms = rounded(rig.recorder.silence_ms(service.spec().name, rig.now_ns));
+  return figures;
 }
 
 /// False if less than the wanted rate is no fault: the service plays a recording at its own times,
@@ -83,51 +87,33 @@ bool is_settled(const Service& service, std::int64_t now_ns) {
 
 // Services publish stage marks for each message, so the rates of the rings are counted from the
 // marks.
-json ring_status(const Service& service, const RigView& rig) {
+StreamFigures stream_figures_of(const Service& service, const RigView& rig) {
   const auto& frames = rig.recorder.ledger().frames(service.spec().name);
-  return {{"wanted_hz", wanted_hz(service.spec())},
-          {"held_hz", rounded(frames.recent_hz(rig.now_ns))},
-          {"is_held_to_it", is_held_to_its_rate(service.spec())},
-          {"is_settled", is_settled(service, rig.now_ns)},
-          {"count", frames.total()},
-          {"newest_age_ms", or_null(frames.newest_age_ms(rig.now_ns))}};
+  return {.wanted_hz = wanted_hz(service.spec()),
+          .held_hz = rounded(frames.recent_hz(rig.now_ns)),
+          .is_held_to_it = is_held_to_its_rate(service.spec()),
+          .is_settled = is_settled(service, rig.now_ns),
+          .count = frames.total(),
+          .newest_age_ms = rounded(frames.newest_age_ms(rig.now_ns))};
 }
 
-/// The light of the output; null if none came.
-json light_status(const LightCount& light) {
-  if (!light.source) return {};
-  return {{"times_by", msg::kLightSourceNames[static_cast<std::size_t>(*light.source)]},
-          {"missed_refreshes", light.missed},
-          {"doubled_frames", light.doubled}};
+/// Empty if none came.
+std::optional<LightFigures> figures_of(const LightCount& light) {
+  if (!light.source) return std::nullopt;
+  return LightFigures{std::string(msg::kLightSourceNames[static_cast<std::size_t>(*light.source)]),
+                      light.missed, light.doubled};
 }
 
-json loss_status(const LossCount& lost) {
-  json status;
-  for (const auto& [reason, count] : lost.by_reason()) status[std::string(reason)] = count;
-  return status;
+/// Empty if nothing is known.
+std::optional<DriftFigures> figures_of(const msg::DriftNote& drift) {
+  if (drift.places == 0) return std::nullopt;
+  return DriftFigures{drift.moved, static_cast<int>(drift.places), rounded(drift.across_mm),
+                      rounded(drift.turn_deg)};
 }
 
-/// "frozen": 2, ... by kind.
-json fault_status(const Ledger& ledger) {
-  json status;
-  for (std::size_t k = 0; k < msg::kTrackerFaults; ++k)
-    status[std::string(msg::kTrackerFaultNames[k])] = ledger.tracker_faults()[k];
-  return status;
-}
-
-/// Where the tracker seems to be, relative to its calibration; null if nothing is known.
-json drift_status(const msg::DriftNote& drift) {
-  if (drift.places == 0) return {};
-  return {{"moved", drift.moved},
-          {"places", drift.places},
-          {"across_mm", rounded(drift.across_mm)},
-          {"turn_deg", rounded(drift.turn_deg)}};
-}
-
-json summary_of(const Histogram& times) {
-  return {{"p50", rounded(times.percentile_ns(0.50) * 1e-3)},
-          {"p99", rounded(times.percentile_ns(0.99) * 1e-3)},
-          {"count", times.count()}};
+StageFigures figures_of(const Histogram& times) {
+  return {rounded(times.percentile_ns(0.50) * 1e-3), rounded(times.percentile_ns(0.99) * 1e-3),
+          times.count()};
 }
 
 int restarts_of(const Services& services) {
@@ -138,25 +124,28 @@ int restarts_of(const Services& services) {
 
 }  // namespace
 
-json status_of(const RigView& rig) {
-  json status{{"rig", rig.name},
-              {"uptime_s", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))},
-              {"keeper_died", rig.keeper_died}};
+Figures figures_of(const RigView& rig) {
+  const auto& ledger = rig.recorder.ledger();
+  Figures figures;
+  figures.rig = rig.name;
+  figures.uptime_s = rounded(ns_to_seconds(rig.now_ns - rig.started_ns));
+  figures.keeper_died = rig.keeper_died;
   for (const auto& service : rig.services) {
-    status["services"][service->spec().name] = service_status(*service, rig);
-    if (!service->spec().stream.empty())
-      status["rings"][service->spec().stream] = ring_status(*service, rig);
+    const auto& spec = service->spec();
+    figures.services[spec.name] = figures_of(*service, rig);
+    if (!spec.stream.empty()) figures.streams[spec.stream] = stream_figures_of(*service, rig);
   }
-  status["light"] = light_status(rig.recorder.ledger().light());
-  status["lost_images"] = loss_status(rig.recorder.ledger().lost_images());
-  status["tracker_faults"] = fault_status(rig.recorder.ledger());
-  status["tracker_drift"] = drift_status(rig.recorder.ledger().tracker_drift());
-  status["stage_us"] = json::object();
-  for (const auto& [stage, times] : rig.recorder.ledger().stages())
-    status["stage_us"][stage] = summary_of(times.recent(rig.now_ns));
+  figures.light = figures_of(ledger.light());
+  for (const auto& [reason, count] : ledger.lost_images().by_reason())
+    figures.lost_images[std::string(reason)] = count;
+  for (std::size_t k = 0; k < msg::kTrackerFaults; ++k)
+    figures.tracker_faults[std::string(msg::kTrackerFaultNames[k])] = ledger.tracker_faults()[k];
+  figures.tracker_drift = figures_of(ledger.tracker_drift());
+  for (const auto& [stage, times] : ledger.stages())
+    figures.stages[stage] = figures_of(times.recent(rig.now_ns));
   for (std::size_t r = 0; r < msg::kRungs; ++r)
-    status["rungs"][std::string(msg::kRungNames[r])] = rig.recorder.ledger().rungs()[r];
-  return status;
+    figures.rungs[std::string(msg::kRungNames[r])] = ledger.rungs()[r];
+  return figures;
 }
 
 std::string progress_line(const RigView& rig) {
@@ -170,7 +159,13 @@ std::string progress_line(const RigView& rig) {
 }
 
 json live_report(const RigView& rig) {
-  json report{{"rig", rig.name}, {"seconds", rounded(ns_to_seconds(rig.now_ns - rig.started_ns))}};
+  auto figures = figures_of(rig);
+  for (const auto& [stage, times] : rig.recorder.ledger().stages())
+    figures.stages[stage] = figures_of(times.whole_run());
+  const auto all = to_json(std::move(figures));
+  json report{{"rig", all["rig"]}, {"seconds", all["uptime_s"]}};
+  for (const auto* part : {"light", "lost_images", "tracker_faults", "stage_us"})
+    report[part] = all[part];
   for (const auto& service : rig.services) {
     const auto& spec = service->spec();
     report["services"][spec.name] = {{"restarts", service->restarts()},
@@ -178,14 +173,9 @@ json live_report(const RigView& rig) {
                                      {"is_held_to_its_rate", is_held_to_its_rate(spec)}};
     if (spec.stream.empty()) continue;
     const auto held_hz = rig.recorder.ledger().frames(spec.name).held_hz(rig.now_ns);
-    report["rates"][spec.name] = {{"wanted_hz", wanted_hz(spec)}, {"held_hz", rounded(held_hz)}};
+    report["rates"][spec.name] = {{"wanted_hz", all["rings"][spec.stream]["wanted_hz"]},
+                                  {"held_hz", rounded(held_hz)}};
   }
-  report["light"] = light_status(rig.recorder.ledger().light());
-  report["lost_images"] = loss_status(rig.recorder.ledger().lost_images());
-  report["tracker_faults"] = fault_status(rig.recorder.ledger());
-  report["stage_us"] = json::object();
-  for (const auto& [stage, times] : rig.recorder.ledger().stages())
-    report["stage_us"][stage] = summary_of(times.whole_run());
   return report;
 }
 

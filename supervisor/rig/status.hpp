@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "supervisor/look/figures/figures.hpp"
 #include "supervisor/record/recorder.hpp"
 #include "supervisor/rig/service_table.hpp"
 
@@ -19,8 +20,8 @@ struct RigView {
   bool keeper_died = false;     ///< KeeperLink::keeper_died()
 };
 
-/// The status of a rig, as `handcast status --json` prints it.
-nlohmann::json status_of(const RigView& rig);
+/// The figures of a rig, which answer `handcast status`.
+Figures figures_of(const RigView& rig);
 /// One line of figures: "up 12 s  camera 240 Hz  pose 110 Hz  ...  restarts 0".
 std::string progress_line(const RigView& rig);
 /// The figures of a whole run (live.json).

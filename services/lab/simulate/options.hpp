@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,17 +19,12 @@ struct Options {
   /// @{
   std::string json_file, frames_directory, trace_file, record_directory;
   /// @}
-  bool help = false;     ///< --help
-  bool version = false;  ///< --version
-  bool quiet = false;    ///< no progress line
+  bool quiet = false;  ///< no progress line
+  std::string text;    ///< that --help or --version asks for; "" if the program shall run
 };
-
-/// The text of --help.
-/// The text of --help.
-std::string help();
 
 /// Parses the command line. Errors: bad_config (an unknown option, a missing value or rig file, a
 /// number out of range).
-Result<Options> parse_options(int argc, const char* const* argv);
+Result<Options> parse(int argc, const char* const* argv);
 
 }  // namespace handcast::simulate

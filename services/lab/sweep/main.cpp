@@ -6,9 +6,9 @@
 #include <atomic>
 #include <cstdio>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/verb_options.hpp"
 #include "ipc/base/version.hpp"
 #include "services/lab/sweep/columns.hpp"
 #include "services/lab/sweep/results.hpp"
@@ -17,7 +17,7 @@
 namespace handcast::sweep {
 namespace {
 
-struct CommandLine {
+struct Options {
   std::vector<std::string> files;
   std::string output, shard;
   int jobs = 0;
@@ -54,8 +54,8 @@ int complain(const Error& error) {
   return exit_code_of(error);
 }
 
-std::filesystem::path output_of(const CommandLine& line, const Plan& plan, const Shard& shard) {
-  if (!line.output.empty()) return line.output;
+std::filesystem::path output_of(const Options& options, const Plan& plan, const Shard& shard) {
+  if (!options.output.empty()) return options.output;
   const auto part = shard.count > 1 ? fmt::format(".{}-of-{}", shard.index, shard.count) : "";
   return std::filesystem::path("out") / fmt::format("{}{}.csv", plan.name, part);
 }
@@ -83,31 +83,31 @@ int report(const Plan& plan, const Outcome& outcome, const std::filesystem::path
   return outcome.failed > 0 ? kExitBadResult : kExitDone;
 }
 
-int sweep(const CommandLine& line) {
-  const auto shard = line.shard.empty() ? Result<Shard>(Shard{}) : parse_shard(line.shard);
+int sweep(const Options& options) {
+  const auto shard = options.shard.empty() ? Result<Shard>(Shard{}) : parse_shard(options.shard);
   if (!shard) return complain(shard.error());
-  const auto plan = load_plan(line.files.front());
+  const auto plan = load_plan(options.files.front());
   if (!plan) return complain(plan.error());
   const auto expansion = expand(*plan);
   if (!expansion) return complain(expansion.error());
-  if (line.list) return list_runs(*plan, expansion->runs, *shard);
+  if (options.list) return list_runs(*plan, expansion->runs, *shard);
 
-  const auto file = output_of(line, *plan, *shard);
+  const auto file = output_of(options, *plan, *shard);
   auto results =
-      Results::open(file, heading_of(*plan, *expansion, std::string(version())), line.fresh);
+      Results::open(file, heading_of(*plan, *expansion, std::string(version())), options.fresh);
   if (!results) return complain(results.error());
   stop_on_signals();
   const auto outcome =
-      run_all(*plan, expansion->runs, {*shard, line.jobs, line.quiet}, **results, stop);
+      run_all(*plan, expansion->runs, {*shard, options.jobs, options.quiet}, **results, stop);
   return outcome ? report(*plan, *outcome, file) : complain(outcome.error());
 }
 
-int merge_files(const CommandLine& line) {
-  if (line.output.empty())
+int merge_files(const Options& options) {
+  if (options.output.empty())
     return complain({Errc::bad_config, "--merge needs an output file; give it with -o"});
-  const auto merged = merge({line.files.begin(), line.files.end()}, line.output);
+  const auto merged = merge({options.files.begin(), options.files.end()}, options.output);
   if (!merged) return complain(merged.error());
-  fmt::print("{} runs, {} of them failed: {}\n", merged->rows, merged->failed, line.output);
+  fmt::print("{} runs, {} of them failed: {}\n", merged->rows, merged->failed, options.output);
   if (!merged->missing.empty())
     fmt::print(stderr, "handcast sweep: no file has runs {}\n", print_indices(merged->missing));
   return merged->missing.empty() && merged->failed == 0 ? kExitDone : kExitBadResult;
@@ -118,29 +118,27 @@ int merge_files(const CommandLine& line) {
 
 static int run_verb(int argc, char** argv) {
   using namespace handcast::sweep;
-  CommandLine line;
-  CLI::App app(
+  Options options;
+  handcast::CommandLine line(
+      "handcast sweep",
       "Scores a rig in virtual time with all combinations of the settings of a plan, and writes a "
       "CSV file.",
-      "handcast sweep");
-  app.footer(kFooter);
-  app.add_option("PLAN.toml", line.files, "The plan; with --merge, the files of results")
-      ->required();
-  app.add_option("-o,--output", line.output, "File of results (default: out/PLAN.csv)");
-  app.add_option("--shard", line.shard, "I/N: does only the runs whose index is I modulo N");
-  app.add_option("-j,--jobs", line.jobs, "Number of simultaneous runs (default: one per core)")
-      ->check(CLI::Range(1, 4096));
-  app.add_flag("--list", line.list, "Prints the runs and does none");
-  app.add_flag("--fresh", line.fresh, "Discards the content of the file of results");
-  app.add_flag("--merge", line.merge, "Merges the results of shards into one file");
-  app.add_flag("--quiet", line.quiet, "Prints no progress");
-  if (const auto code = handcast::answered(app, handcast::parse_options(app, argc, argv)))
-    return *code;
-  if (line.merge) return merge_files(line);
-  if (line.files.size() > 1)
+      kFooter);
+  line.add("PLAN.toml...", options.files, "The plan; with --merge, the files of results");
+  line.add("-o, --output FILE", options.output, "File of results; default: out/PLAN.csv");
+  line.add("--shard I/N", options.shard, "Does only the runs whose index is I modulo N");
+  line.add("-j, --jobs N", options.jobs, "Number of simultaneous runs; default: one per core",
+           {1, 4096});
+  line.add("--list", options.list, "Prints the runs and does none");
+  line.add("--fresh", options.fresh, "Discards the content of the file of results");
+  line.add("--merge", options.merge, "Merges the results of shards into one file");
+  line.add("--quiet", options.quiet, "Prints no progress");
+  if (const auto code = line.answered(argc, argv)) return *code;
+  if (options.merge) return merge_files(options);
+  if (options.files.size() > 1)
     return complain(
         {handcast::Errc::bad_config, "there must be one plan; use --merge for files of results"});
-  return sweep(line);
+  return sweep(options);
 }
 
 int main(int argc, char** argv) {

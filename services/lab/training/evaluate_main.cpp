@@ -3,11 +3,11 @@
 // one JSON object per picture and line, for evaluate.py.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
 
+#include "ipc/base/command_line.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
@@ -165,25 +165,24 @@ int main(int argc, char** argv) try {
   using namespace handcast::landmarks::training;
   landmarks::ModelOptions options{.folder = landmarks::models_folder("").value()};
   std::filesystem::path drawings;
-  std::vector<std::string> names = all_models(), motions, pictures;
+  std::vector<std::string> names, motions, pictures;
   int count = 200;
   std::string mesh = config::TwinShape{}.mesh;
-  CLI::App app{
-      "Runs landmark models on renders of motions and on real pictures; prints JSON lines for "
-      "evaluate.py."};
-  app.add_option("--backend", names, "The landmark models to compare")->capture_default_str();
-  app.add_option("--network", options.handcast_network,
-                 "The file of handcast's network, if not the one that comes with handcast");
-  app.add_option("--models", options.folder, "The folder of MediaPipe's files");
-  app.add_option("--motion", motions, "Folders of recordings of a left hand, or builtin:NAME");
-  app.add_option("--mesh", mesh, "The flesh that the renders show, as twin.shape.mesh")
-      ->capture_default_str();
-  app.add_option("--picture", pictures,
-                 "Pictures NAME_camera.png of a left hand, with NAME_joints_2d_left.npy beside "
-                 "them");
-  app.add_option("--drawings", drawings, "A folder for drawings of the results on pictures");
-  app.add_option("--count", count, "Frames of each motion")->check(CLI::Range(10, 100000));
-  CLI11_PARSE(app, argc, argv);
+  CommandLine line("handcast-evaluate-landmarks",
+                   "Runs landmark models on renders of motions and on real pictures; prints JSON "
+                   "lines for evaluate.py.");
+  line.add("--backend NAME", names, "A landmark model to compare; default: all");
+  line.add("--network FILE", options.handcast_network,
+           "The file of handcast's network, if not the one that comes with handcast");
+  line.add("--models DIR", options.folder, "The folder of MediaPipe's files");
+  line.add("--motion DIR", motions, "A folder of a recording of a left hand, or builtin:NAME");
+  line.add("--mesh NAME", mesh, "The flesh that the renders show, as twin.shape.mesh");
+  line.add("--picture FILE", pictures,
+           "A picture NAME_camera.png of a left hand, with NAME_joints_2d_left.npy beside it");
+  line.add("--drawings DIR", drawings, "A folder for drawings of the results on pictures");
+  line.add("--count N", count, "Frames of each motion", {10, 100000});
+  if (const auto code = line.answered(argc, argv)) return *code;
+  if (names.empty()) names = all_models();
 
   const auto models = open(names, options);
   Result<void> done;

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 
+#include "ipc/base/command_line.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/lab/training/generator.hpp"
 
@@ -65,17 +65,19 @@ int main(int argc, char** argv) try {
   std::uint64_t seed = 1, first = 0, count = 1000;
   int people = 160, preview = 0;
   std::string picture = "training.png";
-  CLI::App app{
+  constexpr handcast::CommandLine::Range kAny{0, 1e15};
+  handcast::CommandLine line(
+      "handcast-training-images",
       "Makes synthetic infrared images of hands with their landmarks for the training; writes them "
-      "as a row of Sample structs (film.hpp) to standard output."};
-  app.add_option("--seed", seed, "The seed of everything random");
-  app.add_option("--first", first, "The number of the first image, to continue an earlier run");
-  app.add_option("--count", count, "The number of images");
-  app.add_option("--people", people, "The number of different hands")->check(CLI::Range(1, 1000));
-  app.add_option("--preview", preview, "Instead draws this number of images with their labels")
-      ->check(CLI::Range(0, 1000));
-  app.add_option("--picture", picture, "The file of --preview");
-  CLI11_PARSE(app, argc, argv);
+      "as a row of Sample structs (film.hpp) to standard output.");
+  line.add("--seed N", seed, "The seed of everything random", kAny);
+  line.add("--first N", first, "The number of the first image, to continue an earlier run", kAny);
+  line.add("--count N", count, "The number of images", kAny);
+  line.add("--people N", people, "The number of different hands", {1, 1000});
+  line.add("--preview N", preview, "Instead draws this number of images with their labels",
+           {0, 1000});
+  line.add("--picture FILE.png", picture, "The file of --preview");
+  if (const auto code = line.answered(argc, argv)) return *code;
 
   auto generator = Generator::create(people, seed);
   if (!generator)

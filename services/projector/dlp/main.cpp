@@ -5,8 +5,8 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "services/projector/dlp/dlp_controller.hpp"
-#include "services/runtime/command_line.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/options.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
@@ -76,8 +76,8 @@ static void run_dlp(service::Context& context) {
 }
 
 /// `handcast-dlp --safe`: darkens the projector after a crash that left nobody to do so.
-static int make_safe(const service::CommandLine& line) {
-  const auto rig = must(config::load_rig(line.config_file, line.settings));
+static int make_safe(const service::Options& options) {
+  const auto rig = must(config::load_rig(options.config_file, options.settings));
   auto controller = must(dlp::open_dlp(rig));
   if (auto dark = controller->darken(Deadline::in(kPatience)); !dark) {
     log::warning("{}; once more", dark.error().what);  // nobody else will try
@@ -101,17 +101,17 @@ static std::vector<const char*> without_safe(int argc, char** argv) {
 }
 
 int main(int argc, char** argv) {
+  const daemon::ServiceDescription description{
+      .name = "dlp",
+      .summary = "Commands the controller of a DLP projector: LEDs, mode, patterns.",
+      .paced_by = "a clock, once a second",
+      .backends = service::describe_rows(dlp::dlp_backends())};
   if (const auto words = without_safe(argc, argv); !words.empty()) {
     log::set_program("dlp");
     return run_program("handcast-dlp", argc, argv, [&](int, char**) {
       return make_safe(
-          must(service::parse_command_line(static_cast<int>(words.size()), words.data())));
+          must(service::parse_options(description, static_cast<int>(words.size()), words.data())));
     });
   }
-  return service::run(
-      {.name = "dlp",
-       .summary = "Commands the controller of a DLP projector: LEDs, mode, patterns.",
-       .paced_by = "a clock, once a second",
-       .backends = service::describe_rows(dlp::dlp_backends())},
-      argc, argv, run_dlp, check);
+  return service::run(description, argc, argv, run_dlp, check);
 }

@@ -8,6 +8,7 @@
 
 #include "calib/solve/board/board_pdf.hpp"
 #include "config/settings/choice.hpp"
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
@@ -122,14 +123,8 @@ Result<int> run(Options options) {
 
 int run_verb(int argc, char** argv) {
   auto options = parse(argc, argv);
-  if (!options) {
-    fmt::print(stderr, "handcast calibrate: {}\n", printable(options.error().what));
-    return kExitUsage;
-  }
-  if (!options->text.empty()) {
-    fmt::print("{}", options->text);
-    return kExitDone;
-  }
+  const auto text = options.map([](const auto& each) { return each.text; });
+  if (const auto code = answered("handcast calibrate", text)) return *code;
   daemon::install_stop_signals();
   const auto done = run(std::move(*options));
   return done ? *done : complain(done.error());

@@ -2,15 +2,16 @@
 #include "services/tools/calibrate/options.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <tuple>
 
 #include "calib/solve/board/board_name.hpp"
 #include "config/settings/choice.hpp"
-#include "ipc/base/verb_options.hpp"
-#include "services/tools/calibrate/combinations.hpp"
+#include "ipc/base/command_line.hpp"
+#include "ipc/base/join.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -54,6 +55,56 @@ Result<void> check_rig_file(const Options& options) {
                                                                       : ""));
 }
 
+/// An option in place of which no step is measured.
+struct Task {
+  const char* option;
+  std::vector<std::string> takes;  ///< the options that it takes, besides the rig file
+};
+
+const std::array<Task, 5>& tasks() {
+  static const std::array<Task, 5> kTasks{{
+      {"--print-board", {"--board"}},
+      {"--check", {"--set", "--board", "--most-s", "--yes", "--reflector"}},
+      {"--points", {"--set"}},
+      {"--correct", {"--set", "--most-s", "--yes"}},
+      {"--undo", {"--set"}},
+  }};
+  return kTasks;
+}
+
+bool measures(const Options& options, Step step) {
+  return options.steps.empty() || std::ranges::count(options.steps, step) > 0;
+}
+
+Result<void> check_task(const Task& task, const std::vector<std::string>& names,
+                        const Options& options) {
+  for (const auto& name : names) {
+    if (name == task.option || std::ranges::count(task.takes, name) > 0) continue;
+    const bool is_task =
+        std::ranges::any_of(tasks(), [&](const Task& other) { return name == other.option; });
+    return fail(Errc::bad_config,
+                is_task
+                    ? fmt::format("{} and {} do different things; choose one", task.option, name)
+                    : fmt::format("{} does not take {}; leave it out", task.option, name));
+  }
+  if (options.steps.empty()) return {};
+  return fail(Errc::bad_config,
+              fmt::format("{} measures no single steps; leave them out", task.option));
+}
+
+/// Error bad_config: options that do not go together, of which one would have no effect. `names`:
+/// the options that were given.
+Result<void> check_combination(const std::vector<std::string>& names, const Options& options) {
+  const auto is_given = [&](const char* name) { return std::ranges::count(names, name) > 0; };
+  for (const auto& task : tasks())
+    if (is_given(task.option)) return check_task(task, names, options);
+  if (options.reflector_mm > 0 && !measures(options, Step::tracker))
+    return fail(Errc::bad_config, "--reflector belongs to the step `tracker`; add it");
+  if (!options.photodiode.empty() && !measures(options, Step::light))
+    return fail(Errc::bad_config, "--photodiode belongs to the step `light`; add it");
+  return {};
+}
+
 }  // namespace
 
 std::filesystem::path default_folder(const std::filesystem::path& rig_file) {
@@ -61,80 +112,70 @@ std::filesystem::path default_folder(const std::filesystem::path& rig_file) {
 }
 
 Result<Options> parse(int argc, char** argv) {
-  CLI::App app(kSummary, "handcast calibrate");
+  CommandLine line("handcast calibrate", kSummary);
   Options options;
   std::vector<std::string> steps;
   std::string board = calib::print_board_name(calib::Board{}), camera, camera2, projector;
-  app.add_option("RIG.toml", options.rig_file, "The rig file");
-  app.add_option("STEP", steps,
-                 "lens, lens2, pair (of a second camera), screen, tracker, light; "
-                 "default: all that are left");
-  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's")
-      ->allow_extra_args(false);
-  app.add_option("--board", board,
-                 "The board that you have: KIND:COLUMNSxROWS:MM; charuco, checkerboard or circles, "
-                 "how many squares or circles, and the side of a square in mm (measure it)")
-      ->capture_default_str();
-  app.add_option("--print-board", options.board_pdf,
-                 "Writes the board to this file as a PDF to be printed, and ends");
-  app.add_option("--camera", camera,
-                 "Size of the camera's images, e.g. 1280x1024: only for a rig without a "
-                 "calibration, or for other devices than the calibrated ones");
-  app.add_option(
-      "--camera2", camera2,
-      "Size of the second camera's images, e.g. 640x480: only if it is not calibrated yet "
-      "and not that of the first camera");
-  app.add_option("--projector", projector,
-                 "Size of the projector's image, e.g. 1920x1080: only for a rig without a "
-                 "calibration, or for other devices than the calibrated ones");
-  app.add_option("--folder", options.folder,
-                 "Where pictures, results and the report go; default: RIG.calibration");
-  const auto* most_s =
-      app.add_option("--most-s", options.most_s,
-                     "Ends a step after so many seconds, even if it is not done, with what was "
-                     "seen; more time for a slow hand or a dark room. With --check, 10 for each "
-                     "part")
-          ->check(CLI::Range(5, 3600))
-          ->capture_default_str();
-  app.add_flag(
-      "--apply", options.apply,
-      "Writes the settings that were measured (projector.latency_ms, projector.gamma), and "
-      "the name of a new calibration file, to RIG.measured.toml, whose values win over those of "
-      "the rig file; the old file is kept");
-  app.add_option("--photodiode", options.photodiode,
-                 "An ALSA capture device with a photodiode in the projector's light: the step "
-                 "light measures with it when the light comes, for a camera that does not see it");
-  app.add_flag("--yes", options.yes, "Starts each step at once, without waiting for Enter");
-  app.add_flag("--restart", options.restart,
-               "Forgets what was measured in this folder before it measures");
-  app.add_flag(
-      "--check", options.check,
-      "Says in half a minute whether camera, tracker, projector or second camera have moved "
-      "since they were calibrated, and changes nothing; the rig may be up");
-  app.add_option("--reflector", options.reflector_mm,
-                 "Measures the tracker by a retro-reflector of this diameter, mm, on the tip of an "
-                 "index finger, in place of the landmarks of a hand")
-      ->check(CLI::Range(1, 50));
-  app.add_option("--points", options.points,
-                 "Says how good recorded points of a reflector are, and ends: a folder with "
-                 "2dpoints.npy (px), 3dpoints.npy (mm) and perhaps timestamps.npy (us)");
-  app.add_flag(
-      "--correct", options.correct,
-      "Corrects a tracker that has moved a little, by hands that are held still, while the "
-      "rig is up; asks before it writes");
-  app.add_flag(
-      "--undo", options.undo,
-      "Puts back the calibration and the measured settings that the last call has changed");
-  auto text = parse_options(app, argc, argv);
+  line.add("[RIG.toml]", options.rig_file, "The rig file");
+  line.add("[STEP...]", steps,
+           "lens, lens2, pair (of a second camera), screen, tracker, light; default: all that are "
+           "left");
+  line.add("--set path=value", options.settings, "A setting that overrides the file's");
+  line.add("--board BOARD", board,
+           "The board that you have: KIND:COLUMNSxROWS:MM; charuco, checkerboard or circles, "
+           "how many squares or circles, and the side of a square in mm (measure it)");
+  line.add("--print-board FILE.pdf", options.board_pdf,
+           "Writes the board to this file as a PDF to be printed, and ends");
+  line.add("--camera SIZE", camera,
+           "Size of the camera's images, e.g. 1280x1024: only for a rig without a calibration, or "
+           "for other devices than the calibrated ones");
+  line.add("--camera2 SIZE", camera2,
+           "Size of the second camera's images, e.g. 640x480: only if it is not calibrated yet "
+           "and not that of the first camera");
+  line.add("--projector SIZE", projector,
+           "Size of the projector's image, e.g. 1920x1080: only for a rig without a calibration, "
+           "or for other devices than the calibrated ones");
+  line.add("--folder DIR", options.folder,
+           "Where pictures, results and the report go; default: RIG.calibration");
+  line.add("--most-s N", options.most_s,
+           "Ends a step after so many seconds, even if it is not done, with what was seen; more "
+           "time for a slow hand or a dark room. With --check, 10 for each part",
+           {5, 3600});
+  line.add("--apply", options.apply,
+           "Writes the settings that were measured (projector.latency_ms, projector.gamma), and "
+           "the name of a new calibration file, to RIG.measured.toml, whose values win over those "
+           "of the rig file; the old file is kept");
+  line.add("--photodiode DEVICE", options.photodiode,
+           "An ALSA capture device with a photodiode in the projector's light: the step light "
+           "measures with it when the light comes, for a camera that does not see it");
+  line.add("--yes", options.yes, "Starts each step at once, without waiting for Enter");
+  line.add("--restart", options.restart,
+           "Forgets what was measured in this folder before it measures");
+  line.add("--check", options.check,
+           "Says in half a minute whether camera, tracker, projector or second camera have moved "
+           "since they were calibrated, and changes nothing; the rig may be up");
+  line.add("--reflector N", options.reflector_mm,
+           "Measures the tracker by a retro-reflector of this diameter, mm, on the tip of an "
+           "index finger, in place of the landmarks of a hand",
+           {1, 50});
+  line.add("--points DIR", options.points,
+           "Says how good recorded points of a reflector are, and ends: a folder with "
+           "2dpoints.npy (px), 3dpoints.npy (mm) and perhaps timestamps.npy (us)");
+  line.add("--correct", options.correct,
+           "Corrects a tracker that has moved a little, by hands that are held still, while the "
+           "rig is up; asks before it writes");
+  line.add("--undo", options.undo,
+           "Puts back the calibration and the measured settings that the last call has changed");
+  auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   if (!(options.text = std::move(*text)).empty()) return options;
 
-  if (options.check && most_s->count() == 0) options.most_s = kCheck_s;
+  if (options.check && !line.has("--most-s")) options.most_s = kCheck_s;
   for (const auto& word : steps) {
     const auto step = config::choice_named<Step>(word);
     if (!step)
       return fail(Errc::bad_config, fmt::format("there is no step '{}'; there are {}", word,
-                                                fmt::join(words_of(Step{}), ", ")));
+                                                join(words_of(Step{}), ", ")));
     options.steps.push_back(*step);
   }
   auto parsed = calib::parse_board(board);
@@ -151,7 +192,7 @@ Result<Options> parse(int argc, char** argv) {
   }
   if (options.folder.empty() && !options.rig_file.empty())
     options.folder = default_folder(options.rig_file);
-  auto fits = check_combination(app, options);
+  auto fits = check_combination(line.given(), options);
   if (fits) fits = check_rig_file(options);
   return fits.map([&] { return options; });
 }

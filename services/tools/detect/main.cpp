@@ -2,13 +2,12 @@
 // handcast detect: the landmark detector on pictures.
 #include <fmt/format.h>
 
-#include <map>
 #include <string>
 #include <vector>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/verb_options.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/tools/detect/run.hpp"
 
@@ -43,33 +42,30 @@ int detect(const Options& options) {
 static int run_verb(int argc, char** argv) {
   using namespace handcast;
   detect::Options options;
-  CLI::App app("Finds the 21 landmarks of the hands in pictures.", "handcast detect");
-  app.footer(detect::kFooter);
-  app.add_option("IMAGE", options.images, "PNG or JPEG pictures")->required();
-  app.add_option("--joints", options.joints,
-                 "A tracker's joints in the picture, one .npy file per picture: (21,2) in pixels, "
-                 "or (42,2) in -1..1")
-      ->allow_extra_args(false);
-  app.add_option("--side", options.joints_side, "The side of the hand in --joints")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, msg::Side>{{"left", msg::Side::left},
-                                                                   {"right", msg::Side::right}})
-              .description("{left, right}"))
-      ->default_str("left");
-  app.add_option("--model", options.models,
-                 "The folder of MediaPipe's files; scripts/get-models fetches them");
-  app.add_option("--backend", options.backend, detect::backend_help())
-      ->default_str("mediapipe, or handcast without its files");
-  app.add_option("--hands", options.hands, "The largest number of hands")
-      ->check(CLI::Range(1, 2))
-      ->capture_default_str();
-  app.add_option("-o,--out", options.output, "A folder for drawings of the results");
-  app.add_option("--repeat", options.repeat,
-                 "Repeats each detection and prints the median of the times")
-      ->check(CLI::Range(1, 100000));
-  app.add_flag("--json", options.json, "Prints JSON");
-  app.add_flag("--quiet", options.quiet, "Prints no progress");
-  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
+  CommandLine line("handcast detect", "Finds the 21 landmarks of the hands in pictures.",
+                   detect::kFooter);
+  line.add("IMAGE...", options.images, "PNG or JPEG pictures");
+  line.add("--joints FILE.npy", options.joints,
+           "A tracker's joints in the picture, one .npy file per picture: (21,2) in pixels, or "
+           "(42,2) in -1..1");
+  line.add(
+      "--side left|right",
+      [&](const std::string& side) -> Result<void> {
+        options.joints_side = side == "left" ? msg::Side::left : msg::Side::right;
+        return {};
+      },
+      "The side of the hand in --joints (default: left)");
+  line.add("--model DIR", options.models,
+           "The folder of MediaPipe's files; scripts/get-models fetches them");
+  line.add("--backend NAME", options.backend,
+           detect::backend_help() + " (default: mediapipe, or handcast without its files)");
+  line.add("--hands N", options.hands, "The largest number of hands", {1, 2});
+  line.add("-o, --out DIR", options.output, "A folder for drawings of the results");
+  line.add("--repeat N", options.repeat,
+           "Repeats each detection and prints the median of the times", {1, 100000});
+  line.add("--json", options.json, "Prints JSON");
+  line.add("--quiet", options.quiet, "Prints no progress");
+  if (const auto code = line.answered(argc, argv)) return *code;
   return detect::detect(options);
 }
 

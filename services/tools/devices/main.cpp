@@ -7,10 +7,10 @@
 #include <cstring>
 #include <string>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/verb_options.hpp"
 #include "services/tools/devices/attached.hpp"
 
 #ifdef HANDCAST_WITH_LIBUSB
@@ -83,21 +83,20 @@ Result<void> write_leap_calibration(const LeapCalibration&) {
 
 static int run_verb(int argc, char** argv) {
   using namespace handcast;
-  CLI::App app(
+  CommandLine line(
+      "handcast devices",
       "Lists the cameras, displays, projector controllers and hand trackers of this computer, with "
-      "the settings that use them, and why one cannot be opened.",
-      "handcast devices");
+      "the settings that use them, and why one cannot be opened.");
   bool as_json = false;
-  app.add_flag("--json", as_json, "The same as JSON");
+  line.add("--json", as_json, "The same as JSON");
   devices::LeapCalibration leap;
-  app.add_option(
-      "--leap-calibration", leap.file,
-      "Write a calibration file with the lenses that a Leap Motion Controller has measured "
-      "itself; its projector and tracker are still to be calibrated");
-  app.add_option("--leap", leap.device, "Its serial number or USB port; default: the only one");
-  app.add_option("--eye", leap.eye, "The first camera: left or right")->capture_default_str();
-  app.add_option("--size", leap.size, "Size of its images")->capture_default_str();
-  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
+  line.add("--leap-calibration FILE", leap.file,
+           "Write a calibration file with the lenses that a Leap Motion Controller has measured "
+           "itself; its projector and tracker are still to be calibrated");
+  line.add("--leap DEVICE", leap.device, "Its serial number or USB port; default: the only one");
+  line.add("--eye NAME", leap.eye, "The first camera: left or right");
+  line.add("--size SIZE", leap.size, "Size of its images");
+  if (const auto code = line.answered(argc, argv)) return *code;
   if (!leap.file.empty()) {
     const auto written = devices::write_leap_calibration(leap);
     if (written) return kExitDone;

@@ -2,14 +2,12 @@
 // handcast doctor: whether a rig, and the computer that runs it, are fit for a show.
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdlib>
 #include <iterator>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/verb_options.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
 #include "services/tools/doctor/rig_file.hpp"
@@ -49,21 +47,16 @@ std::vector<Finding> examine(const Options& options) {
 }
 
 int run_verb(int argc, char** argv) {
-  CLI::App app(
+  CommandLine line(
+      "handcast doctor",
       "Checks a rig before the show: its file, this computer, and, if the rig is up, what it sees "
-      "and casts. Exit 1 if there is a fault.",
-      "handcast doctor");
+      "and casts. Exit 1 if there is a fault.");
   Options options;
-  app.add_option("RIG.toml", options.file, "The rig file")->required();
-  app.add_option("--set", options.settings, "path=value: a setting that overrides the file's");
-  app.add_option("--seconds", options.seconds, "How long a rig that is up is watched")
-      ->check([](const std::string& text) {
-        const double seconds = std::strtod(text.c_str(), nullptr);
-        return seconds >= 0.5 && seconds <= 3600 ? "" : "must be 0.5 to 3600 seconds";
-      })
-      ->capture_default_str();
-  app.add_flag("--json", options.as_json, "The same as JSON");
-  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
+  line.add("RIG.toml", options.file, "The rig file");
+  line.add("--set path=value", options.settings, "A setting that overrides the file's");
+  line.add("--seconds N", options.seconds, "How long a rig that is up is watched", {0.5, 3600});
+  line.add("--json", options.as_json, "The same as JSON");
+  if (const auto code = line.answered(argc, argv)) return *code;
   const auto findings = examine(options);
   fmt::print("{}", options.as_json ? to_json(findings) : printable(print(findings)));
   return has_fault(findings) ? kExitBadResult : kExitDone;

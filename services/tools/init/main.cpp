@@ -10,6 +10,7 @@
 
 #include "config/measured.hpp"
 #include "config/rig.hpp"
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
@@ -77,11 +78,8 @@ Result<std::string> make_rig(const Options& options) {
 
 int run_verb(int argc, char** argv) {
   const auto options = parse(argc, argv);
-  if (!options) return complain(kExitUsage, options.error().what);
-  if (!options->text.empty()) {
-    fmt::print("{}", options->text);
-    return kExitDone;
-  }
+  const auto text = options.map([](const auto& each) { return each.text; });
+  if (const auto code = answered("handcast init", text)) return *code;
   const auto done = make_rig(*options);
   if (!done) return complain(exit_code_of(done.error()), done.error().what);
   fmt::print("{}", printable(*done));

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/write_whole.hpp"
@@ -53,11 +54,8 @@ static handcast::Result<void> show(const handcast::preview::Options& options) {
 static int run_verb(int argc, char** argv) {
   using namespace handcast;
   const auto parsed = preview::parse(argc, argv);
-  if (!parsed) return complain(kExitUsage, parsed.error().what);
-  if (!parsed->text.empty()) {
-    fmt::print("{}", parsed->text);
-    return kExitDone;
-  }
+  const auto text = parsed.map([](const auto& each) { return each.text; });
+  if (const auto code = answered("handcast preview", text)) return *code;
   if (::nice(10) == -1) fmt::print(stderr, "handcast preview: the priority cannot be lowered\n");
   const auto done = show(parsed->options);
   if (!done) return complain(exit_code_of(done.error()), done.error().what);

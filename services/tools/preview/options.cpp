@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
-#include "ipc/base/verb_options.hpp"
+#include "ipc/base/command_line.hpp"
 
 namespace handcast::preview {
 namespace {
@@ -35,22 +34,19 @@ Result<Parsed> parse(int argc, char** argv) {
   Parsed parsed;
   auto& options = parsed.options;
   std::string size, layers;
-  CLI::App app("Shows what a running rig sees and does, in a window or as a picture.",
-               "handcast preview");
-  app.add_option("--rig", options.rig, "Which rig, if several are up");
-  app.add_option("--shot", options.shot, "Writes a PNG file instead; needs no display");
-  app.add_option("--after", options.after_s,
-                 "Seconds for which the rig is watched before the picture")
-      ->check(CLI::Range(0.1, kLongest_s))
-      ->capture_default_str();
-  app.add_option("--layers", layers,
-                 "What is shown over one another: all, or some of image, regions, light, drawing, "
-                 "joints, landmarks, separated by commas; default: all but light");
-  app.add_option("--size", size, "Size in pixels; default: 1600x900");
-  auto text = parse_options(app, argc, argv);
+  CommandLine line("handcast preview",
+                   "Shows what a running rig sees and does, in a window or as a picture.");
+  line.add("--rig NAME", options.rig, "Which rig, if several are up");
+  line.add("--shot FILE.png", options.shot, "Writes a PNG file instead; needs no display");
+  line.add("--after N", options.after_s, "Seconds for which the rig is watched before the picture",
+           {0.1, kLongest_s});
+  line.add("--layers LIST", layers,
+           "What is shown over one another: all, or some of image, regions, light, drawing, "
+           "joints, landmarks, separated by commas; default: all but light");
+  line.add("--size WIDTHxHEIGHT", size, "Size in pixels; default: 1600x900");
+  auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   parsed.text = std::move(*text);
-  if (!std::isfinite(options.after_s)) return fail(Errc::bad_config, "--after: nan is no number");
   if (!size.empty())
     if (auto set = set_size(size, options.look); !set) return tl::make_unexpected(set.error());
   if (layers.empty()) return parsed;

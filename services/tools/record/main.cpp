@@ -2,6 +2,7 @@
 // handcast record: writes the rings of a running rig to a folder.
 #include <fmt/format.h>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "services/tools/record/npy_folder.hpp"
@@ -15,11 +16,8 @@ static int complain(int exit_code, const std::string& sentence) {
 static int run_verb(int argc, char** argv) {
   using namespace handcast;
   const auto parsed = record::parse(argc, argv);
-  if (!parsed) return complain(kExitUsage, parsed.error().what);
-  if (!parsed->text.empty()) {
-    fmt::print("{}", parsed->text);
-    return kExitDone;
-  }
+  const auto text = parsed.map([](const auto& each) { return each.text; });
+  if (const auto code = answered("handcast record", text)) return *code;
   const auto& options = parsed->options;
   const auto done =
       options.convert ? record::write_npy_folder(options.folder) : record::record(options);

@@ -4,39 +4,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <sstream>
 
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/join.hpp"
-#include "ipc/base/verb_options.hpp"
 
 namespace handcast::record {
 namespace {
 
 constexpr double kLongest_s = 30 * 86'400.0;
 
+/// Adds the parts of a list with commas.
+CommandLine::Setter add_to(std::vector<std::string>& names) {
+  return [&names](const std::string& list) -> Result<void> {
+    std::istringstream parts(list);
+    for (std::string name; std::getline(parts, name, ',');) names.push_back(name);
+    return {};
+  };
+}
+
 }  // namespace
 
 Result<Parsed> parse(int argc, char** argv) {
   Parsed parsed;
   auto& options = parsed.options;
-  CLI::App app("Writes the rings of a running rig to a folder, until Ctrl-C or the end of the rig.",
-               "handcast record");
-  app.add_option("DIR", options.folder, "A new or empty folder")->required();
-  app.add_option("--rig", options.rig, "Which rig, if several are up");
-  app.add_option("--seconds", options.seconds, "Stops after so many seconds")
-      ->check(CLI::Range(0.1, kLongest_s));
-  app.add_option("--rings", options.rings,
-                 "What is recorded: all, or some of camera, pose, landmarks, projection, marks, or "
-                 "whole names of rings, separated by commas")
-      ->delimiter(',');
-  app.add_flag("--npy", options.npy,
-               "Afterwards also writes DIR/npy: arrays in the layout of Casper DPM and PNG images");
-  app.add_flag("--convert", options.convert,
-               "Records nothing: writes DIR/npy for the recording DIR");
-  auto text = parse_options(app, argc, argv);
+  CommandLine line(
+      "handcast record",
+      "Writes the rings of a running rig to a folder, until Ctrl-C or the end of the rig.");
+  line.add("DIR", options.folder, "A new or empty folder");
+  line.add("--rig NAME", options.rig, "Which rig, if several are up");
+  line.add("--seconds N", options.seconds, "Stops after so many seconds", {0.1, kLongest_s});
+  line.add("--rings LIST", add_to(options.rings),
+           "What is recorded: all, or some of camera, pose, landmarks, projection, marks, or "
+           "whole names of rings, separated by commas");
+  line.add("--npy", options.npy,
+           "Afterwards also writes DIR/npy: arrays in the layout of Casper DPM and PNG images");
+  line.add("--convert", options.convert, "Records nothing: writes DIR/npy for the recording DIR");
+  auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   parsed.text = std::move(*text);
-  if (!std::isfinite(options.seconds)) return fail(Errc::bad_config, "--seconds: nan is no number");
   if (options.rings == std::vector<std::string>{"all"}) options.rings.clear();
   return parsed;
 }

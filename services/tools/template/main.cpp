@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "config/settings/quoted.hpp"
+#include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
-#include "ipc/base/verb_options.hpp"
 #include "services/tools/template/template.hpp"
 
 namespace handcast::picture {
@@ -49,17 +49,14 @@ static int run_verb(int argc, char** argv) {
   std::string folder, rig;
   std::vector<std::string> settings;
   int width_px = 4096;
-  CLI::App app("Writes pictures that show where each part of a picture lies on the hands.",
-               "handcast template");
-  app.footer(picture::kFooter);
-  app.add_option("DIR", folder, "The folder of the pictures; it is created")->required();
-  app.add_option("--rig", rig, "A rig file with hands of its own ([hand])");
-  app.add_option("--set", settings, "path=value: changes a setting of the rig")
-      ->allow_extra_args(false);
-  app.add_option("--width", width_px, "Width of the line drawings, px; a multiple of 8")
-      ->check(CLI::Range(256, 8192))
-      ->capture_default_str();
-  if (const auto code = answered(app, parse_options(app, argc, argv))) return *code;
+  CommandLine line("handcast template",
+                   "Writes pictures that show where each part of a picture lies on the hands.",
+                   picture::kFooter);
+  line.add("DIR", folder, "The folder of the pictures; it is created");
+  line.add("--rig RIG.toml", rig, "A rig file with hands of its own ([hand])");
+  line.add("--set path=value", settings, "Changes a setting of the rig");
+  line.add("--width N", width_px, "Width of the line drawings, px; a multiple of 8", {256, 8192});
+  if (const auto code = line.answered(argc, argv)) return *code;
   if (width_px % picture::kProportionWidth != 0)
     return picture::complain({Errc::bad_config, "--width must be a multiple of 8"});
   return picture::write(folder, rig, settings, width_px);

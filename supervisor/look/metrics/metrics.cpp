@@ -2,14 +2,19 @@
 #include "supervisor/look/metrics/metrics.hpp"
 
 #include <fmt/format.h>
+#include <prometheus/collectable.h>
+#include <prometheus/exposer.h>
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 
 #include <algorithm>
 #include <array>
+#include <exception>
+#include <mutex>
 
 #include "ipc/base/clock.hpp"
 #include "supervisor/life/state.hpp"
+#include "supervisor/look/figures/figures.hpp"
 #include "supervisor/look/top/top_model.hpp"
 
 namespace handcast::supervisor {
@@ -183,45 +188,41 @@ std::vector<MetricFamily> families_of_readers(const std::vector<RingRow>& rings)
   };
 }
 
-MetricFamily stages_of(const nlohmann::json& status) {
+MetricFamily stages_of(const Figures& figures) {
   auto stages = Family::gauge("handcast_stage_seconds",
                               "Time of a stage in the last ten seconds, by quantile.");
-  if (!status.contains("stage_us")) return stages.family;
-  for (const auto& [stage, times] : status["stage_us"].items())
-    for (const auto& [key, quantile] : {std::pair{"p50", "0.5"}, std::pair{"p99", "0.99"}})
-      if (times.contains(key) && times[key].is_number())
-        stages.add({{"stage", stage}, {"quantile", quantile}},
-                   times[key].template get<double>() * 1e-6);
+  for (const auto& [stage, times] : figures.stages) {
+    stages.add({{"stage", stage}, {"quantile", "0.5"}}, times.p50_us * 1e-6);
+    stages.add({{"stage", stage}, {"quantile", "0.99"}}, times.p99_us * 1e-6);
+  }
   return stages.family;
 }
 
-/// A family with a value for each number in an object of the status. `label` names its keys.
-MetricFamily by_key(const nlohmann::json& status, const char* object, Family family,
+/// A counter with a value for each count. `label` names their keys.
+MetricFamily by_key(const std::map<std::string, std::uint64_t>& counts, Family family,
                     const char* label) {
-  if (!status.contains(object)) return std::move(family.family);
-  for (const auto& [key, number] : status[object].items())
-    if (number.is_number()) family.add({{label, key}}, number.template get<double>());
+  for (const auto& [key, count] : counts) family.add({{label, key}}, count);
   return std::move(family.family);
 }
 
-std::vector<MetricFamily> families_by_key(const nlohmann::json& status) {
+std::vector<MetricFamily> families_by_key(const Figures& figures) {
   return {
-      by_key(status, "rungs",
+      by_key(figures.rungs,
              Family::counter("handcast_rung_hands_total",
                              "Hands in drawn frames, by rung of the ladder."),
              "rung"),
-      by_key(status, "lost_images",
+      by_key(figures.lost_images,
              Family::counter("handcast_camera_lost_images_total",
                              "Images of the camera that were lost, by reason."),
              "reason"),
-      by_key(status, "tracker_faults",
+      by_key(figures.tracker_faults,
              Family::counter("handcast_tracker_faults_total",
                              "What the tracker did wrong, by kind: how often it began."),
              "kind"),
   };
 }
 
-std::vector<MetricFamily> families_of_light(const nlohmann::json& status) {
+std::vector<MetricFamily> families_of_light(const Figures& figures) {
   auto source = Family::gauge("handcast_light_times_info",
                               "What says when light comes (label by); always 1.");
   auto missed = Family::counter("handcast_light_missed_refreshes_total",
@@ -230,28 +231,27 @@ std::vector<MetricFamily> families_of_light(const nlohmann::json& status) {
                                  "Frames that the output showed for several refreshes.");
   auto wanted = Family::gauge("handcast_light_wanted_hertz",
                               "Frames per second that the projector is asked for.");
-  const nlohmann::json::json_pointer rate("/rings/projection.frames/wanted_hz");
-  if (status.contains(rate) && status[rate].is_number()) wanted.add({}, status[rate].get<double>());
-  if (status.contains("light") && status["light"].is_object()) {
-    const auto& light = status["light"];
-    source.add({{"by", light.value("times_by", "")}}, 1);
-    missed.add({}, light.value("missed_refreshes", 0.0));
-    doubled.add({}, light.value("doubled_frames", 0.0));
+  const auto stream = figures.streams.find("projection.frames");
+  if (stream != figures.streams.end() && stream->second.wanted_hz)
+    wanted.add({}, *stream->second.wanted_hz);
+  if (figures.light) {
+    source.add({{"by", figures.light->times_by}}, 1);
+    missed.add({}, figures.light->missed_refreshes);
+    doubled.add({}, figures.light->doubled_frames);
   }
   return {source.family, missed.family, doubled.family, wanted.family};
 }
 
-std::vector<MetricFamily> families_of_drift(const nlohmann::json& status) {
+std::vector<MetricFamily> families_of_drift(const Figures& figures) {
   auto moved = Family::gauge("handcast_tracker_moved",
                              "1 if the tracker is not where the calibration says.");
   auto across = Family::gauge("handcast_tracker_drift_millimetres",
                               "How far it is from there, across the camera's axis.");
   auto turn = Family::gauge("handcast_tracker_drift_degrees", "How far it is turned from there.");
-  if (status.contains("tracker_drift") && status["tracker_drift"].is_object()) {
-    const auto& drift = status["tracker_drift"];
-    moved.add({}, drift.value("moved", false) ? 1 : 0);
-    across.add({}, drift.value("across_mm", 0.0));
-    turn.add({}, drift.value("turn_deg", 0.0));
+  if (const auto& drift = figures.tracker_drift) {
+    moved.add({}, drift->moved ? 1 : 0);
+    across.add({}, drift->across_mm);
+    turn.add({}, drift->turn_deg);
   }
   return {moved.family, across.family, turn.family};
 }
@@ -262,10 +262,11 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   append(families, families_of(model.services));
   append(families, families_of(model.rings));
   append(families, families_of_readers(model.rings));
-  families.push_back(stages_of(look.status));
-  append(families, families_by_key(look.status));
-  append(families, families_of_light(look.status));
-  append(families, families_of_drift(look.status));
+  const auto figures = look.figures.value_or(Figures());
+  families.push_back(stages_of(figures));
+  append(families, families_by_key(figures));
+  append(families, families_of_light(figures));
+  append(families, families_of_drift(figures));
   std::erase_if(families, [](const auto& family) { return family.metric.empty(); });
   return families;
 }
@@ -276,12 +277,43 @@ std::string metrics_text(const RigLook& look) {
   return prometheus::TextSerializer().Serialize(metrics_of(look));
 }
 
-Result<HttpServer> serve_metrics(int port, std::function<RigLook()> look) {
-  auto server = HttpServer::listen(port, [look = std::move(look)] { return metrics_text(look()); });
-  if (server) return server;
-  return fail(Errc::bad_config, fmt::format("{}; set supervisor.metrics_port to another port, or "
-                                            "to 0",
-                                            server.error().what));
+/// The metrics as they are at each scrape.
+class MetricsServer::Parts : public prometheus::Collectable {
+ public:
+  explicit Parts(std::function<RigLook()> look) : look_(std::move(look)) {}
+
+  std::vector<MetricFamily> Collect() const override {
+    const std::lock_guard lock(mutex_);
+    return metrics_of(look_());
+  }
+
+  std::unique_ptr<prometheus::Exposer> exposer;
+
+ private:
+  mutable std::mutex mutex_;
+  std::function<RigLook()> look_;
+};
+
+Result<MetricsServer> MetricsServer::open(int port, std::function<RigLook()> look) try {
+  auto parts = std::make_shared<Parts>(std::move(look));
+  parts->exposer = std::make_unique<prometheus::Exposer>(std::vector<std::string>{
+      "listening_ports", fmt::format("127.0.0.1:{}", port), "num_threads", std::to_string(kThreads),
+      "request_timeout_ms", std::to_string(kPatience_ms)});
+  parts->exposer->RegisterCollectable(parts);
+  return MetricsServer(std::move(parts));
+} catch (const std::exception& problem) {
+  return fail(Errc::bad_config,
+              fmt::format("port {} of 127.0.0.1 cannot be opened ({}); set supervisor.metrics_port "
+                          "to another port, or to 0",
+                          port, problem.what()));
+}
+
+int MetricsServer::port() const { return parts_->exposer->GetListeningPorts().front(); }
+
+MetricsServer::MetricsServer(std::shared_ptr<Parts> parts) : parts_(std::move(parts)) {}
+MetricsServer::MetricsServer(MetricsServer&&) noexcept = default;
+MetricsServer::~MetricsServer() {
+  if (parts_) parts_->exposer.reset();  // before what its threads call
 }
 
 }  // namespace handcast::supervisor

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
 #include "supervisor/look/top/top_model.hpp"
 
 namespace handcast::supervisor {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/look/top/top_look.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "ipc/base/clock.hpp"
@@ -9,30 +10,20 @@
 namespace handcast::supervisor {
 namespace {
 
-using nlohmann::json;
-
 constexpr auto kPatience = std::chrono::seconds(1);  ///< `handcast top` cannot be quit meanwhile
 
-/// True if a status is from another supervisor: its uptime is shorter, or its services differ.
-bool is_another(const json& before, const json& now) {
-  const auto services_in = [](const json& status) {
-    std::set<std::string> names;
-    if (const auto found = status.find("services"); found != status.end() && found->is_object())
-      for (const auto& [name, entry] : found->items()) names.insert(name);
-    return names;
-  };
-  if (!before.is_object() || before.value("uptime_s", 0.0) > now.value("uptime_s", 0.0))
-    return true;
-  return services_in(before) != services_in(now);
+/// True if figures are of another supervisor: its uptime is shorter, or its services differ.
+bool is_another(const std::optional<Figures>& before, const Figures& now) {
+  const auto same_name = [](const auto& a, const auto& b) { return a.first == b.first; };
+  return !before || before->uptime_s > now.uptime_s ||
+         !std::ranges::equal(before->services, now.services, same_name);
 }
 
 std::set<pid_t> pids_of(const RigLook& look) {
   std::set<pid_t> pids;
-  if (look.status.contains("services"))
-    for (const auto& [name, service] : look.status["services"].items()) {
-      pids.insert(pid_in(service, "pid"));
-      pids.insert(pid_in(service, "standby"));
-    }
+  if (look.figures)
+    for (const auto& [name, service] : look.figures->services)
+      pids.insert({service.pid, service.spare_pid});
   for (const auto& ring : look.rings)
     for (const auto& reader : ring.readers) pids.insert(reader.pid);
   return pids;
@@ -40,14 +31,9 @@ std::set<pid_t> pids_of(const RigLook& look) {
 
 }  // namespace
 
-pid_t pid_in(const json& service, const char* key) {
-  const auto found = service.find(key);
-  return found != service.end() && found->is_number_integer() ? found->get<pid_t>() : 0;
-}
-
 RigLook RigWatcher::observe() {
   ask_supervisor();
-  RigLook look{.rig = rig_, .taken_ns = now_ns(), .missing = missing_, .status = status_};
+  RigLook look{.rig = rig_, .taken_ns = now_ns(), .missing = missing_, .figures = figures_};
   for (const auto& ring : rings_) look.rings.push_back(ring.look());
   for (const auto pid : pids_of(look))
     if (auto usage = usage_of(pid)) look.processes.emplace(pid, std::move(*usage));
@@ -60,10 +46,10 @@ void RigWatcher::ask_supervisor() {
     missing_ = answer ? "its answer is invalid" : answer.error().what;
     return;
   }
-  const auto& status = answer->object["status"];
-  const bool other = !missing_.empty() || is_another(status_, status);
+  auto figures = figures_in(answer->object["status"]);
+  const bool other = !missing_.empty() || is_another(figures_, figures);
   missing_.clear();
-  status_ = status;
+  figures_ = std::move(figures);
   if (other) open_rings();
 }
 

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ipc/ring/ring_view.hpp"
+#include "supervisor/look/figures/figures.hpp"
 #include "supervisor/look/top/process_usage.hpp"
 
 namespace handcast::supervisor {
@@ -18,8 +19,8 @@ struct RigLook {
   std::string rig;            ///< name of the rig
   std::int64_t taken_ns = 0;  ///< when it was observed, CLOCK_MONOTONIC
   std::string missing;        ///< why the supervisor does not answer; empty if it does
-  /// The output of `handcast status --json`; the last one if the supervisor does not answer.
-  nlohmann::json status;
+  /// The figures of the supervisor; the last ones if it does not answer, empty if it never has.
+  std::optional<Figures> figures;
   std::vector<ipc::RingSnapshot> rings;     ///< the rings of the rig
   std::map<pid_t, ProcessUsage> processes;  ///< living services, spares and readers
 };
@@ -40,11 +41,8 @@ class RigWatcher {
 
   std::string rig_;
   std::string missing_;
-  nlohmann::json status_;
+  std::optional<Figures> figures_;
   std::vector<ipc::RingView> rings_;
 };
-
-/// The pid of a service in a status: `key` is "pid" or "standby". 0 if there is none.
-pid_t pid_in(const nlohmann::json& service, const char* key);
 
 }  // namespace handcast::supervisor

@@ -13,24 +13,7 @@
 namespace handcast::supervisor {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::int64_t kSilentTooLong_ns = 1'000'000'000;  ///< for a ring without a regular rate
-
-std::string text_in(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-double number_in(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
-}
-
-/// The same, limited to what can be converted to nanoseconds or to an int.
-double small_number_in(const json& object, const char* key) {
-  return std::clamp(number_in(object, key), 0.0, 1e9);
-}
 
 /// Counts per second; empty if the count decreased, because another process counts now.
 std::optional<double> rate(std::uint64_t before, std::uint64_t now, std::int64_t span_ns) {
@@ -39,15 +22,13 @@ std::optional<double> rate(std::uint64_t before, std::uint64_t now, std::int64_t
 }
 
 /// E.g. "died 10 times within 60 s; again in 2.1 s: last line of its log".
-std::string trouble_in(const json& service) {
-  auto trouble = text_in(service, "reason");
-  if (const auto wait_s = small_number_in(service, "retry_s"); wait_s > 0)
+std::string trouble_of(const ServiceFigures& service) {
+  auto trouble = service.reason;
+  if (service.retry_s.value_or(0) > 0)
     trouble += fmt::format("{}again in {}", trouble.empty() ? "" : "; ",
-                           text_of_span(seconds_to_ns(wait_s)));
-  const auto log = service.find("log");
-  if (log == service.end() || !log->is_array() || log->empty() || !log->back().is_string())
-    return trouble;
-  auto last_line = log->back().get<std::string>();
+                           text_of_span(seconds_to_ns(*service.retry_s)));
+  if (service.log.empty()) return trouble;
+  const auto& last_line = service.log.back();
   if (trouble.empty() || last_line.ends_with(trouble)) return last_line;
   return trouble + ": " + last_line;
 }
@@ -57,17 +38,9 @@ const ProcessUsage* usage_in(const RigLook& look, pid_t pid) {
   return found == look.processes.end() ? nullptr : &found->second;
 }
 
-ServiceRow service_row(const std::string& name, const json& service, const RigLook& before,
-                       const RigLook& now) {
-  ServiceRow row{.name = name,
-                 .state = text_in(service, "state"),
-                 .backend = text_in(service, "backend"),
-                 .last_exit = text_in(service, "last_exit"),
-                 .trouble = trouble_in(service),
-                 .pid = pid_in(service, "pid"),
-                 .spare_pid = pid_in(service, "standby"),
-                 .restarts = static_cast<int>(small_number_in(service, "restarts")),
-                 .uptime_s = small_number_in(service, "uptime_s")};
+ServiceRow service_row(const std::string& name, const ServiceFigures& service,
+                       const RigLook& before, const RigLook& now) {
+  ServiceRow row{service, name, trouble_of(service), std::nullopt, std::nullopt};
   const auto* usage = usage_in(now, row.pid);
   const auto* earlier = usage_in(before, row.pid);
   if (usage) row.usage = *usage;
@@ -81,10 +54,10 @@ ServiceRow service_row(const std::string& name, const json& service, const RigLo
 class Names {
  public:
   explicit Names(const RigLook& look) : look_(look) {
-    if (!look.status.contains("services")) return;
-    for (const auto& [name, service] : look.status["services"].items()) {
-      services_[pid_in(service, "pid")] = name;
-      services_[pid_in(service, "standby")] = name + " (spare)";
+    if (!look.figures) return;
+    for (const auto& [name, service] : look.figures->services) {
+      services_[service.pid] = name;
+      services_[service.spare_pid] = name + " (spare)";
     }
   }
   std::string of(pid_t pid) const {
@@ -120,15 +93,15 @@ ReaderRow reader_row(const ipc::ReaderView& reader, const ipc::RingSnapshot* ear
   return row;
 }
 
-std::optional<double> wanted_hz_of(const std::string& stream, const json& status) {
-  if (!status.contains("rings") || !status["rings"].contains(stream)) return std::nullopt;
-  const auto wanted_hz = number_in(status["rings"][stream], "wanted_hz");
-  return wanted_hz > 0 ? std::optional(wanted_hz) : std::nullopt;
+std::optional<double> wanted_hz_of(const std::string& stream, const RigLook& look) {
+  if (!look.figures) return std::nullopt;
+  const auto found = look.figures->streams.find(stream);
+  return found == look.figures->streams.end() ? std::nullopt : found->second.wanted_hz;
 }
 
 RingRow ring_row(const ipc::RingSnapshot& ring, const RigLook& before, const RigLook& now,
                  const Names& names) {
-  RingRow row{.now = ring, .wanted_hz = wanted_hz_of(ring.stream, now.status)};
+  RingRow row{.now = ring, .wanted_hz = wanted_hz_of(ring.stream, now)};
   if (ring.newest_published_ns != 0) {
     row.newest_age_ns = std::max<std::int64_t>(0, now.taken_ns - ring.newest_published_ns);
     row.latency_ns = ring.newest_published_ns - ring.newest_origin_ns;
@@ -145,32 +118,34 @@ RingRow ring_row(const ipc::RingSnapshot& ring, const RigLook& before, const Rig
   return row;
 }
 
-std::vector<RungShare> rungs_of(const RigLook& before, const RigLook& now) {
-  if (!now.status.contains("rungs")) return {};
-  const auto hands_in = [](const RigLook& look, const std::string& rung) {
-    return look.status.contains("rungs") ? number_in(look.status["rungs"], rung.c_str()) : 0.0;
-  };
+/// By how much a count has grown between two looks; negative after a new start.
+double growth(const std::map<std::string, std::uint64_t>& before, const std::string& key,
+              std::uint64_t now) {
+  const auto found = before.find(key);
+  return static_cast<double>(now) -
+         (found == before.end() ? 0.0 : static_cast<double>(found->second));
+}
+
+std::vector<RungShare> rungs_of(const Figures& before, const Figures& now) {
   std::vector<RungShare> rungs;
   double all = 0;
   for (const auto rung : msg::kRungNames) {
-    const std::string name(rung);
-    const double hands = hands_in(now, name) - hands_in(before, name);
+    const auto found = now.rungs.find(std::string(rung));
+    if (found == now.rungs.end()) continue;
+    const double hands = growth(before.rungs, found->first, found->second);
     if (hands <= 0) continue;
-    rungs.push_back({name, hands});
+    rungs.push_back({found->first, hands});
     all += hands;
   }
   for (auto& rung : rungs) rung.share /= all;
   return rungs;
 }
 
-std::vector<ReasonCount> losses_of(const RigLook& before, const RigLook& now) {
-  if (!now.status.contains("lost_images") || !before.status.contains("lost_images")) return {};
+std::vector<ReasonCount> losses_of(const Figures& before, const Figures& now) {
   std::vector<ReasonCount> losses;
-  for (const auto& [reason, count] : now.status["lost_images"].items()) {
-    const double lost = number_in(now.status["lost_images"], reason.c_str()) -
-                        number_in(before.status["lost_images"], reason.c_str());
-    if (lost > 0) losses.push_back({reason, lost});
-  }
+  for (const auto& [reason, count] : now.lost_images)
+    if (const double lost = growth(before.lost_images, reason, count); lost > 0)
+      losses.push_back({reason, lost});
   return losses;
 }
 
@@ -189,13 +164,13 @@ bool RingRow::late() const {
 TopModel compare(const RigLook& before, const RigLook& now) {
   TopModel model{.rig = now.rig, .missing = now.missing};
   const Names names(now);
-  if (now.status.is_object()) model.uptime_s = small_number_in(now.status, "uptime_s");
-  if (now.status.contains("services"))
-    for (const auto& [name, service] : now.status["services"].items())
-      model.services.push_back(service_row(name, service, before, now));
   for (const auto& ring : now.rings) model.rings.push_back(ring_row(ring, before, now, names));
-  model.rungs = rungs_of(before, now);
-  model.lost_images = losses_of(before, now);
+  if (!now.figures) return model;
+  model.uptime_s = now.figures->uptime_s;
+  for (const auto& [name, service] : now.figures->services)
+    model.services.push_back(service_row(name, service, before, now));
+  model.rungs = rungs_of(before.figures.value_or(Figures()), *now.figures);
+  if (before.figures) model.lost_images = losses_of(*before.figures, *now.figures);
   return model;
 }
 

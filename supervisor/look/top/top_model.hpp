@@ -3,7 +3,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,23 +18,11 @@ inline constexpr std::int64_t kOldLease_ns = 100'000'000;
 inline constexpr double kLatePeriods = 3;
 
 /// One service of a rig.
-struct ServiceRow {
-  /// From the status of the rig: name, state, back end, and how the last process ended.
-  /// @{
-  std::string name, state, backend, last_exit;
-  /// @}
-  std::string trouble;  ///< if it is not well(): the reason and the last line of its log
-  /// Pids of the service and of its spare; 0: none.
-  /// @{
-  pid_t pid = 0, spare_pid = 0;
-  /// @}
-  int restarts = 0;                   ///< number of restarts
-  double uptime_s = 0;                ///< time since its process was started
+struct ServiceRow : ServiceFigures {
+  std::string name;
+  std::string trouble;                ///< the reason if it is not well, and its last line
   std::optional<ProcessUsage> usage;  ///< empty if the process is dead
   std::optional<double> cores;        ///< processor use since the last look; 1.0: one whole core
-
-  /// True if the service runs, or was stopped on request.
-  bool well() const { return state == "ready" || state == "stopped"; }
 };
 
 /// One reader of a ring.

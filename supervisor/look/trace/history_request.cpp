@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "ipc/control/control_client.hpp"
+#include "supervisor/look/figures/figures.hpp"
 #include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
@@ -22,10 +23,11 @@ Result<std::map<std::string, double>> ask_for_rates(const std::string& rig) {
   const auto answer = control::ask(rig, control::Request{.verb = control::Verb::status});
   if (!answer) return tl::make_unexpected(answer.error());
   std::map<std::string, double> rates;
+  const auto figures = figures_in(answer->value("status", nlohmann::json()));
   for (const auto& service : services_of({}, {})) {
-    const nlohmann::json::json_pointer place("/status/rings/" + service.stream + "/wanted_hz");
-    if (!service.stream.empty() && answer->contains(place) && answer->at(place).is_number())
-      rates[service.name] = answer->at(place).get<double>();
+    const auto stream = figures.streams.find(service.stream);
+    if (stream != figures.streams.end() && stream->second.wanted_hz)
+      rates[service.name] = *stream->second.wanted_hz;
   }
   return rates;
 }

@@ -422,7 +422,7 @@ TEST_F(Instances, EachHasItsOwnSchedulingCheckAndDescription) {
 
 TEST_F(Instances, OneThatTheProgramIsNotIsRefusedWithThoseThatItIs) {
   EXPECT_EXIT(_exit(program({"--as", "camera3", "--config", rig_})), ExitedWithCode(kExitUsage),
-              "--as camera3: this program is camera or camera2");
+              "--as: this program is camera or camera2, not .camera3.");
 }
 
 TEST(DescribeAt, TheSecondViewpointHasItsOwnRingsAndSettings) {

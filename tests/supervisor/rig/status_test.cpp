@@ -12,8 +12,8 @@ ServiceSpec pose_by(const char* backend) {
   return {.name = "pose", .stream = "pose.hands", .backend = backend, .wanted_hz = 110};
 }
 
-/// The status of a rig whose one service has no program.
-nlohmann::json status_without_program(ServiceSpec spec = pose_by("twin")) {
+/// The figures of a rig whose one service has no program.
+Figures figures_without_program(ServiceSpec spec = pose_by("twin")) {
   auto loop = EventLoop::open().value();
   Launch launch;
   launch.program_folder = "/nowhere";
@@ -23,12 +23,12 @@ nlohmann::json status_without_program(ServiceSpec spec = pose_by("twin")) {
   services.front()->start();
   const std::string name = "desk";
   const Recorder recorder;
-  return status_of({name, services, recorder, 0, 60'000'000'000});
+  return figures_of({name, services, recorder, 0, 60'000'000'000});
 }
 
 TEST(Status, ARecordingAndSubFramesAreNotHeldToTheRate) {
   const auto is_held = [](const ServiceSpec& spec) {
-    return status_without_program(spec)["rings"]["pose.hands"]["is_held_to_it"].get<bool>();
+    return figures_without_program(spec).streams.at("pose.hands").is_held_to_it;
   };
   EXPECT_TRUE(is_held(pose_by("twin")));
   EXPECT_FALSE(is_held(pose_by("replay")));
@@ -38,18 +38,18 @@ TEST(Status, ARecordingAndSubFramesAreNotHeldToTheRate) {
 }
 
 TEST(Status, AServiceThatDoesNotRunIsNotSettled) {
-  const auto ring = status_without_program()["rings"]["pose.hands"];
-  EXPECT_EQ(ring["wanted_hz"], 110);
-  EXPECT_EQ(ring["is_settled"], false);
+  const auto ring = figures_without_program().streams.at("pose.hands");
+  EXPECT_EQ(ring.wanted_hz, 110);
+  EXPECT_FALSE(ring.is_settled);
 }
 
 TEST(Status, AServiceWhoseProgramIsMissingIsToldWithItsReason) {
-  const auto status = status_without_program()["services"]["pose"];
-  EXPECT_EQ(status["state"], "failed");
-  EXPECT_EQ(status["last_exit"], "exit 100");
-  EXPECT_THAT(status["reason"].get<std::string>(), HasSubstr("/nowhere/handcast-pose"));
-  EXPECT_TRUE(status["retry_s"].is_null());
-  EXPECT_FALSE(status["log"].empty());
+  const auto pose = figures_without_program().services.at("pose");
+  EXPECT_EQ(pose.state, "failed");
+  EXPECT_EQ(pose.last_exit, "exit 100");
+  EXPECT_THAT(pose.reason, HasSubstr("/nowhere/handcast-pose"));
+  EXPECT_EQ(pose.retry_s, std::nullopt);
+  EXPECT_FALSE(pose.log.empty());
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 
+#include <array>
+#include <vector>
+
 #include "ipc/base/unique_fd.hpp"
 #include "tests/supervisor/look/top/rig_looks.hpp"
 
@@ -60,9 +63,8 @@ TEST(Metrics, RingsAndReadersHaveTheirCounts) {
 TEST(Metrics, TheLightSaysWhoKnowsItsTimesAndWhatTheOutputMissed) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_light"))) << "none came";
-  look.status["light"] = {
-      {"times_by", "window system"}, {"missed_refreshes", 7}, {"doubled_frames", 5}};
-  look.status["rings"]["projection.frames"] = {{"wanted_hz", 60}};
+  look.figures->light = LightFigures{"window system", 7, 5};
+  look.figures->streams["projection.frames"].wanted_hz = 60;
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr(R"(handcast_light_times_info{by="window system"} 1)"));
   EXPECT_THAT(text, HasSubstr("handcast_light_missed_refreshes_total 7"));
@@ -72,7 +74,7 @@ TEST(Metrics, TheLightSaysWhoKnowsItsTimesAndWhatTheOutputMissed) {
 
 TEST(Metrics, LostImagesAreCountedByReason) {
   auto look = look_at(10);
-  look.status["lost_images"] = {{"missing", 3}, {"skipped", 2}};
+  look.figures->lost_images = {{"missing", 3}, {"skipped", 2}};
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr(R"(handcast_camera_lost_images_total{reason="missing"} 3)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_camera_lost_images_total{reason="skipped"} 2)"));
@@ -81,7 +83,7 @@ TEST(Metrics, LostImagesAreCountedByReason) {
 TEST(Metrics, FaultsOfTheTrackerAreCountedByKind) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_tracker_faults")));
-  look.status["tracker_faults"] = {{"frozen", 3}, {"exchanged", 0}};
+  look.figures->tracker_faults = {{"frozen", 3}, {"exchanged", 0}};
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr(R"(handcast_tracker_faults_total{kind="frozen"} 3)"));
   EXPECT_THAT(text, HasSubstr(R"(handcast_tracker_faults_total{kind="exchanged"} 0)"));
@@ -90,8 +92,7 @@ TEST(Metrics, FaultsOfTheTrackerAreCountedByKind) {
 TEST(Metrics, TheDriftOfTheTrackerIsThereOnceItIsKnown) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_tracker")));
-  look.status["tracker_drift"] = {
-      {"moved", true}, {"places", 9}, {"across_mm", 5.5}, {"turn_deg", 0.25}};
+  look.figures->tracker_drift = DriftFigures{true, 9, 5.5, 0.25};
   const auto text = metrics_text(look);
   EXPECT_THAT(text, HasSubstr("handcast_tracker_moved 1"));
   EXPECT_THAT(text, HasSubstr("handcast_tracker_drift_millimetres 5.5"));
@@ -110,21 +111,62 @@ TEST(Metrics, OfADeadSupervisorTellThatAndGoOnWithTheRings) {
   look.missing = "nobody answers";
   EXPECT_THAT(metrics_text(look), AllOf(HasSubstr("handcast_supervisor_up 0"),
                                         HasSubstr("handcast_ring_messages_total")));
-  look.status = nullptr;
+  look.figures.reset();
   EXPECT_THAT(metrics_text(look), HasSubstr("handcast_supervisor_up 0"));
 }
 
-TEST(Metrics, APortThatIsTakenIsForAPersonToChange) {
-  const UniqueFd taken(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  sockaddr_in address{.sin_family = AF_INET, .sin_port = 0, .sin_addr = {htonl(INADDR_LOOPBACK)}};
-  socklen_t size = sizeof address;
-  ASSERT_EQ(bind(taken.get(), reinterpret_cast<const sockaddr*>(&address), size), 0);
-  ASSERT_EQ(listen(taken.get(), 1), 0);
-  ASSERT_EQ(getsockname(taken.get(), reinterpret_cast<sockaddr*>(&address), &size), 0);
-  const auto server = serve_metrics(ntohs(address.sin_port), [] { return look_at(1); });
-  ASSERT_FALSE(server);
-  EXPECT_EQ(server.error().code, Errc::bad_config);
-  EXPECT_THAT(server.error().what, HasSubstr("supervisor.metrics_port"));
+UniqueFd connected(int port) {
+  UniqueFd client(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const sockaddr_in address{.sin_family = AF_INET,
+                            .sin_port = htons(static_cast<std::uint16_t>(port)),
+                            .sin_addr = {htonl(INADDR_LOOPBACK)},
+                            .sin_zero = {}};
+  EXPECT_EQ(::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address),
+            0);
+  return client;
+}
+
+/// Everything that the server answers to a request until it closes the connection.
+std::string answer_to(int port, std::string_view request) {
+  const auto client = connected(port);
+  ::send(client.get(), request.data(), request.size(), MSG_NOSIGNAL);
+  std::string text;
+  std::array<char, 4096> bytes;
+  for (;;) {
+    const auto count = ::recv(client.get(), bytes.data(), bytes.size(), 0);
+    if (count <= 0) return text;
+    text.append(bytes.data(), static_cast<std::size_t>(count));
+  }
+}
+
+TEST(MetricsServer, AScrapeGetsTheMetricsOfThatMoment) {
+  double count = 0;
+  const auto server = MetricsServer::open(0, [&] { return look_at(++count); });
+  ASSERT_TRUE(server) << server.error().what;
+  const auto answer = answer_to(server->port(), "GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n");
+  EXPECT_THAT(answer, AllOf(testing::StartsWith("HTTP/1.1 200 OK\r\n"), HasSubstr("text/plain"),
+                            HasSubstr(R"(handcast_rig_info{rig="paper"} 1)")));
+  EXPECT_THAT(answer_to(server->port(), "GET / HTTP/1.1\r\nHost: x\r\n\r\n"),
+              testing::StartsWith("HTTP/1.1 404"));
+  EXPECT_EQ(count, 1);
+}
+
+TEST(MetricsServer, ClientsThatSayNothingAreLeft) {
+  const auto server = MetricsServer::open(0, [] { return look_at(1); });
+  ASSERT_TRUE(server) << server.error().what;
+  std::vector<UniqueFd> silent;
+  for (int i = 0; i < MetricsServer::kThreads; ++i) silent.push_back(connected(server->port()));
+  EXPECT_THAT(answer_to(server->port(), "GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n"),
+              HasSubstr("handcast_rig_info"));
+}
+
+TEST(MetricsServer, APortThatIsTakenIsForAPersonToChange) {
+  const auto first = MetricsServer::open(0, [] { return look_at(1); });
+  ASSERT_TRUE(first) << first.error().what;
+  const auto second = MetricsServer::open(first->port(), [] { return look_at(1); });
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().code, Errc::bad_config);
+  EXPECT_THAT(second.error().what, HasSubstr("supervisor.metrics_port"));
 }
 
 }  // namespace

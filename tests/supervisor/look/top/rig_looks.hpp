@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <nlohmann/json.hpp>
+
 #include "ipc/base/clock.hpp"
 #include "supervisor/look/top/top_look.hpp"
 
@@ -33,7 +35,7 @@ inline ipc::ReaderView reader(int row, pid_t pid, std::uint64_t received) {
 /// reads, a sick projector.
 inline RigLook look_at(double second) {
   RigLook look{.rig = "paper", .taken_ns = seconds_to_ns(1000 + second)};
-  look.status = nlohmann::json::parse(R"json({
+  look.figures = figures_in(nlohmann::json::parse(R"json({
     "rig": "paper", "uptime_s": 75.5,
     "services": {
       "camera": {"state": "ready", "pid": 100, "standby": 102, "backend": "twin", "uptime_s": 75, "restarts": 0, "last_exit": null},
@@ -41,12 +43,13 @@ inline RigLook look_at(double second) {
                     "last_exit": "signal 11 (Segmentation fault)", "reason": "died 10 times", "retry_s": 2.5,
                     "log": ["older", "projector: no \u001b[31mlamp"]}},
     "rings": {"camera.frames": {"wanted_hz": 240}},
-    "stage_us": {"draw": {"p50": 1500, "p99": 2500, "count": 100}}})json");
+    "stage_us": {"draw": {"p50": 1500, "p99": 2500, "count": 100}}})json"));
 
-  look.status["rungs"] = {{"hold", 7}, {"landmarks", 90 * second}, {"register", 30 * second}};
-  look.status["lost_images"] = {{"missing", 0}, {"incomplete", 4}, {"skipped", 3 * second}};
+  const auto counted = [&](int hz) { return static_cast<std::uint64_t>(hz * second); };
+  look.figures->rungs = {{"hold", 7}, {"landmarks", counted(90)}, {"register", counted(30)}};
+  look.figures->lost_images = {{"missing", 0}, {"incomplete", 4}, {"skipped", counted(3)}};
 
-  const auto count = static_cast<std::uint64_t>(240 * second);
+  const auto count = counted(240);
   ipc::RingSnapshot frames{.stream = "camera.frames",
                            .slots = 4,
                            .epoch = 3,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include "supervisor/base/options.hpp"
 #include "supervisor/look/trace/latency_table.hpp"
 #include "tests/supervisor/record/marked_frames.hpp"
 
@@ -165,12 +164,6 @@ TEST(Latency, OfNothingIsAnEmptyPage) {
   const auto table = table_of(History(60));
   EXPECT_TRUE(table.stages.empty());
   EXPECT_FALSE(print_latency(table).empty());
-}
-
-TEST(Seconds, AreATimeAboveZeroThatNanosecondsCanHold) {
-  EXPECT_DOUBLE_EQ(parse_seconds("2.5").value(), 2.5);
-  for (const auto* text : {"", "0", "-1", "soon", "3s", "inf", "nan", "1e12"})
-    EXPECT_FALSE(parse_seconds(text)) << text;
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/rig/status_text.hpp"
-
 #include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "supervisor/look/figures/figures.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -29,8 +31,10 @@ json status_with(const json& more) {
   return status;
 }
 
+std::string text_of(const json& status) { return print_status(figures_in(status)); }
+
 std::string print_with(const json& pose) {
-  return print_status(status_with({{"services", {{"pose", pose}}}}));
+  return text_of(status_with({{"services", {{"pose", pose}}}}));
 }
 
 TEST(StatusText, AServiceThatIsWellHasOneLine) {
@@ -49,11 +53,11 @@ TEST(StatusText, SaysWhoKnowsWhenLightComes) {
         {{"projection.frames",
           {{"wanted_hz", 60}, {"held_hz", 59.5}, {"newest_age_ms", 1}, {"count", 9}}}}},
        {"light", {{"times_by", "kernel"}, {"missed_refreshes", 12345678}, {"doubled_frames", 2}}}});
-  EXPECT_THAT(print_status(status),
+  EXPECT_THAT(text_of(status),
               HasSubstr("light: 59.5 Hz of 60 Hz; 12345678 refreshes without a new frame, 2 frames "
                         "shown for several refreshes; times by the kernel\n"));
   status["light"] = nullptr;
-  EXPECT_THAT(print_status(status), Not(HasSubstr("light:")));
+  EXPECT_THAT(text_of(status), Not(HasSubstr("light:")));
 }
 
 TEST(StatusText, NamesTheRingsThatDoNotHoldTheirRate) {
@@ -66,17 +70,17 @@ TEST(StatusText, NamesTheRingsThatDoNotHoldTheirRate) {
                                {"landmarks.hands", ring(nullptr, 3)},
                                {"pose.hands", ring(110, 100)},
                                {"projection.frames", ring(946, 195)}}}});
-  EXPECT_THAT(print_status(status),
+  EXPECT_THAT(text_of(status),
               HasSubstr("slow: camera.frames, projection.frames hold less than 90 % of the wanted "
                         "rate; `handcast latency` shows where the time goes"));
   status["rings"]["camera.frames"]["is_held_to_it"] = false;
-  EXPECT_THAT(print_status(status), HasSubstr("slow: projection.frames holds less"));
+  EXPECT_THAT(text_of(status), HasSubstr("slow: projection.frames holds less"));
   status["rings"]["projection.frames"]["is_settled"] = false;
-  EXPECT_THAT(print_status(status), Not(HasSubstr("slow:"))) << "a service that has just started";
+  EXPECT_THAT(text_of(status), Not(HasSubstr("slow:"))) << "a service that has just started";
 }
 
 TEST(StatusText, TimesOfAMillisecondAndMoreAreInMilliseconds) {
-  const auto text = print_status(
+  const auto text = text_of(
       status_with({{"stage_us", {{"draw", {{"p50", 652.6}, {"p99", 9348.15}, {"count", 7}}}}}}));
   EXPECT_THAT(text, AllOf(HasSubstr(" 652.6 us "), HasSubstr(" 9.35 ms "), Not(HasSubstr("9348"))));
 }
@@ -86,29 +90,29 @@ TEST(StatusText, SaysWhatTheCameraLostAndNothingIfItLostNothing) {
       {{"lost_images",
         {{"missing", 3}, {"incomplete", 2}, {"underrun", 1}, {"skipped", 5000000000}}}});
   EXPECT_THAT(
-      print_status(status),
+      text_of(status),
       HasSubstr("camera: 3 images never arrived, 2 were incomplete, 1 found no free buffer, "
                 "5000000000 were skipped for a newer one\n"));
   status["lost_images"] = {{"missing", 0}, {"incomplete", 0}, {"underrun", 0}, {"skipped", 0}};
-  EXPECT_THAT(print_status(status), Not(HasSubstr("camera:")));
+  EXPECT_THAT(text_of(status), Not(HasSubstr("camera:")));
 }
 
 TEST(StatusText, SaysWhatTheTrackerDidWrongAndNothingIfItDidNothing) {
   auto status = status_with({{"tracker_faults", {{"frozen", 1u}, {"jumped", 12u}, {"late", 0u}}}});
-  EXPECT_THAT(print_status(status), HasSubstr("tracker: frozen 1 time, jumped 12 times\n"));
+  EXPECT_THAT(text_of(status), HasSubstr("tracker: frozen 1 time, jumped 12 times\n"));
   status["tracker_faults"] = {{"frozen", 0u}, {"jumped", "?"}};
-  EXPECT_THAT(print_status(status), Not(HasSubstr("tracker:")));
+  EXPECT_THAT(text_of(status), Not(HasSubstr("tracker:")));
 }
 
 TEST(StatusText, SaysWhetherTheTrackerIsWhereTheCalibrationSays) {
   auto status = status_with({{"tracker_drift", nullptr}});
-  EXPECT_THAT(print_status(status), Not(HasSubstr("tracker:")));
+  EXPECT_THAT(text_of(status), Not(HasSubstr("tracker:")));
   status["tracker_drift"] = {
       {"moved", false}, {"places", 9}, {"across_mm", 0.8}, {"turn_deg", 0.21}};
-  EXPECT_THAT(print_status(status), HasSubstr("tracker: where the calibration says, as far as 9 "
-                                              "places of still hands tell (0.8 mm and 0.21"));
+  EXPECT_THAT(text_of(status), HasSubstr("tracker: where the calibration says, as far as 9 "
+                                         "places of still hands tell (0.8 mm and 0.21"));
   status["tracker_drift"]["moved"] = true;
-  EXPECT_THAT(print_status(status),
+  EXPECT_THAT(text_of(status),
               AllOf(HasSubstr("it has moved by 0.8 mm and 0.21 degrees"), HasSubstr("--correct")));
 }
 
