@@ -1,16 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <span>
 
 #include "renderer/filter/filters.hpp"
-#include "renderer/filter/finger_order.hpp"
-#include "renderer/filter/finger_steps.hpp"
-#include "renderer/filter/landmarks_alone.hpp"
+#include "renderer/filter/finger_faults.hpp"
+#include "renderer/filter/landmark_filter.hpp"
+#include "renderer/filter/point_track.hpp"
 #include "renderer/filter/shared_offset.hpp"
 #include "renderer/filter/tracker_memory.hpp"
 
 namespace handcast::renderer {
+
+/// The landmarks of one hand filtered without the tracker, each by a PointTrack. Less exact than
+/// with the tracker, but valid while it is silent, and an independent estimate if the two disagree.
+class LandmarksAlone {
+ public:
+  /// Without detections. Uses motion_process and noise_px.
+  explicit LandmarksAlone(const config::Filter& settings);
+
+  /// Adds a detection. One more than 80 ms after the last restarts the tracks.
+  void detection(std::int64_t origin_ns, const msg::HandLandmarks& seen);
+
+  /// True if a landmark is known and the newest detection is at most 80 ms older than `time_ns`.
+  bool fresh(std::int64_t time_ns) const;
+  /// Origin of the newest detection; 0 if there is none.
+  std::int64_t newest_ns() const { return newest_ns_; }
+  /// True if landmark `i` has been seen.
+  bool known(int i) const { return tracks_[i].known(); }
+  /// Position of landmark `i` at `time_ns`, undistorted camera px; valid if known(i).
+  glm::vec2 at(int i, std::int64_t time_ns) const { return tracks_[i].at(time_ns); }
+  /// Drops all detections.
+  void forget();
+
+ private:
+  PointTrack::Model model_;
+  std::int64_t newest_ns_ = 0;
+  std::array<PointTrack, kLandmarks> tracks_{};
+};
 
 /// A filter that tracks the offset Q - P of each point at the time of the detection and adds it to
 /// P at the target time. While the tracker is silent, Q̂ is that of LandmarksAlone; after the

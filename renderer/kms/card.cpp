@@ -10,7 +10,7 @@
 #include <cstring>
 #include <optional>
 
-#include "renderer/kms/owned.hpp"
+#include "renderer/kms/pipe.hpp"
 #include "renderer/output/edid.hpp"
 
 namespace handcast::renderer::kms {

@@ -13,10 +13,7 @@
 #include <string_view>
 #include <utility>
 
-#include "renderer/kms/owned.hpp"
-
 namespace handcast::renderer::kms {
-
 namespace {
 
 /// What a Screen changes.

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,9 +13,24 @@
 #include "ipc/base/result.hpp"
 #include "renderer/kms/buffer.hpp"
 #include "renderer/kms/display.hpp"
-#include "renderer/kms/owned.hpp"
 
 namespace handcast::renderer::kms {
+
+struct Freed {
+  void operator()(drmModeRes* resources) const { drmModeFreeResources(resources); }
+  void operator()(drmModeConnector* connector) const { drmModeFreeConnector(connector); }
+  void operator()(drmModeEncoder* encoder) const { drmModeFreeEncoder(encoder); }
+  void operator()(drmModePlaneRes* planes) const { drmModeFreePlaneResources(planes); }
+  void operator()(drmModePlane* plane) const { drmModeFreePlane(plane); }
+  void operator()(drmModeObjectProperties* values) const { drmModeFreeObjectProperties(values); }
+  void operator()(drmModePropertyRes* property) const { drmModeFreeProperty(property); }
+  void operator()(drmModePropertyBlobRes* blob) const { drmModeFreePropertyBlob(blob); }
+  void operator()(drmModeAtomicReq* request) const { drmModeAtomicFree(request); }
+};
+
+/// Owns an answer of libdrm; null if there was none.
+template <class T>
+using Owned = std::unique_ptr<T, Freed>;
 
 /// A connector, CRTC or plane of a card, and the properties that it had when it was read.
 class Object {

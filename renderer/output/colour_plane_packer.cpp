@@ -6,7 +6,6 @@
 #include "config/sections/sub_frames.hpp"
 #include "renderer/base/clones.hpp"
 #include "renderer/output/packers.hpp"
-#include "renderer/output/parts.hpp"
 #include "renderer/output/plane_limits.hpp"
 
 namespace handcast::renderer {

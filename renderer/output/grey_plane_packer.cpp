@@ -5,7 +5,6 @@
 #include "renderer/base/clones.hpp"
 #include "renderer/output/luminance.hpp"
 #include "renderer/output/packers.hpp"
-#include "renderer/output/parts.hpp"
 #include "renderer/output/plane_limits.hpp"
 
 namespace handcast::renderer {

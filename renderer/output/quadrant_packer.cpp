@@ -3,7 +3,6 @@
 #include "renderer/output/light.hpp"
 #include "renderer/output/luminance.hpp"
 #include "renderer/output/packers.hpp"
-#include "renderer/output/parts.hpp"
 
 namespace handcast::renderer {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/pipeline/frame_painter.hpp"
-
 #include <utility>
 
 #include "ipc/base/log.hpp"
 #include "renderer/draw/cpu/cpu_painter.hpp"
+#include "renderer/pipeline/pipeline.hpp"
 
 namespace handcast::renderer {
 

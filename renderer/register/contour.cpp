@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/register/contour.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "renderer/register/registration.hpp"
 
 namespace handcast::renderer {
 namespace {

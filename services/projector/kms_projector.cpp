@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/base/clock.hpp"
 #include "renderer/kms/screen.hpp"
+#include "services/projector/light_clock.hpp"
 #include "services/projector/projector.hpp"
-#include "services/projector/refreshes.hpp"
 
 namespace handcast::projector {
 namespace {

@@ -3,7 +3,6 @@
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
 #include "services/projector/show.hpp"
-#include "services/projector/time_sheet.hpp"
 
 namespace handcast::projector {
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "services/projector/publish.hpp"
-#include "services/projector/time_sheet.hpp"
 
 namespace handcast::projector {
 

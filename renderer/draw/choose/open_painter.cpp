@@ -1,14 +1,115 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/draw/choose/open_painter.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
-#include "renderer/draw/choose/contest.hpp"
 #include "renderer/draw/cpu/cpu_painter.hpp"
+
 #ifdef HANDCAST_WITH_GL
 #include "renderer/draw/gl/gl_painter.hpp"
 #endif
 
 namespace handcast::renderer {
+namespace {
+
+constexpr int kRings = 45, kSegments = 45;  // 2 x 45 x 45 triangles; a hand has 4046
+
+/// An ellipsoid in the middle of the screen, and the mask of a hand that has moved on.
+class Scene {
+ public:
+  Scene(int width_px, int height_px)
+      : texture_(Texture(1024, 640, 0xffc0c0c0), true), mask_(width_px, height_px) {
+    const auto unit_px = static_cast<float>(height_px);
+    const glm::vec2 centre(width_px / 2, height_px / 2), radius(0.13f * unit_px, 0.19f * unit_px),
+        moved = centre + 0.016f * unit_px;
+    add_vertices(centre, radius);
+    add_triangles();
+    for (int y = 0; y < height_px; ++y)
+      for (int x = 0; x < width_px; ++x)
+        mask_.at(x, y) = glm::length((glm::vec2(x, y) - moved) / radius) < 1 ? 255 : 0;
+    const glm::ivec2 low(centre - radius), high(moved + radius);
+    region_ = Rect{low.x, low.y, high.x, high.y}.grown(2).within(width_px, height_px);
+  }
+
+  void paint(Painter& painter) const {
+    const DrawnHand drawn{&mesh_, &texture_, position_px_, depth_m_, {}, revision_};
+    painter.draw({&drawn, 1}, region_);
+    painter.fill(mask_.view(), {}, region_);
+    painter.colour();
+  }
+
+ private:
+  void add_vertices(glm::vec2 centre, glm::vec2 radius) {
+    constexpr float kHalfTurn = std::numbers::pi_v<float>;
+    for (int ring = 0; ring <= kRings; ++ring) {
+      for (int segment = 0; segment <= kSegments; ++segment) {
+        const glm::vec2 uv(static_cast<float>(segment) / kSegments,
+                           static_cast<float>(ring) / kRings);
+        const float polar = kHalfTurn * uv.y, turn = 2 * kHalfTurn * uv.x;
+        position_px_.push_back(
+            centre + radius * glm::vec2(std::sin(polar) * std::cos(turn), -std::cos(polar)));
+        depth_m_.push_back(0.7f - 0.04f * std::sin(polar) * std::sin(turn));
+        mesh_.positions.emplace_back(0);
+        mesh_.uv.push_back(uv);
+        mesh_.chart.push_back(1);
+      }
+    }
+  }
+
+  void add_triangles() {
+    const auto node = [](int ring, int segment) {
+      return static_cast<std::uint16_t>(ring * (kSegments + 1) + segment);
+    };
+    for (int ring = 0; ring < kRings; ++ring) {
+      for (int segment = 0; segment < kSegments; ++segment) {
+        mesh_.triangles.push_back(
+            {node(ring, segment), node(ring, segment + 1), node(ring + 1, segment)});
+        mesh_.triangles.push_back(
+            {node(ring, segment + 1), node(ring + 1, segment + 1), node(ring + 1, segment)});
+      }
+    }
+  }
+
+  HandMesh mesh_;
+  MipChain texture_;
+  std::vector<glm::vec2> position_px_;
+  std::vector<float> depth_m_;
+  Image<std::uint8_t> mask_;
+  Rect region_;
+  std::uint64_t revision_ = new_revision();
+};
+
+FrameTime time_of(std::vector<double> frames_ms) {
+  std::sort(frames_ms.begin(), frames_ms.end());
+  const std::size_t last = frames_ms.size() - 1;
+  return {frames_ms[last / 2], frames_ms[last * 99 / 100]};
+}
+
+}  // namespace
+
+std::pair<FrameTime, FrameTime> contest(Painter& one, Painter& other, int width_px, int height_px,
+                                        double seconds) {
+  constexpr int kRound = 10;  // frames, of which the first only warms up
+  const Scene scene(width_px, height_px);
+  std::vector<double> one_ms, other_ms;
+  const std::int64_t end_ns = now_ns() + seconds_to_ns(seconds);
+  do {
+    for (const auto& [painter, frames_ms] : {std::pair{&one, &one_ms}, {&other, &other_ms}}) {
+      for (int i = 0; i < kRound; ++i) {
+        const std::int64_t begin_ns = now_ns();
+        scene.paint(*painter);
+        if (i > 0) frames_ms->push_back(static_cast<double>(now_ns() - begin_ns) / 1e6);
+      }
+    }
+  } while (now_ns() < end_ns);
+  return {time_of(std::move(one_ms)), time_of(std::move(other_ms))};
+}
+
 namespace {
 
 /// A painter on a GPU, and what the log calls that GPU.

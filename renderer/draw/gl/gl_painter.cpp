@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "renderer/draw/gl/passes.hpp"
-#include "renderer/draw/gl/read_back.hpp"
 
 namespace handcast::renderer {
 namespace {

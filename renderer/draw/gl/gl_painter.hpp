@@ -4,7 +4,7 @@
 
 #include "ipc/base/result.hpp"
 #include "renderer/draw/gl/context.hpp"
-#include "renderer/draw/gl/pass_timer.hpp"
+#include "renderer/draw/gl/objects.hpp"
 #include "renderer/draw/painter.hpp"
 
 namespace handcast::renderer {

@@ -2,6 +2,7 @@
 #include "renderer/draw/gl/objects.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace handcast::renderer::gl {
 
@@ -52,6 +53,60 @@ void wait(Context& context, GLsync fence) {
   if (result == GL_TIMEOUT_EXPIRED) context.lose("the GPU did not finish in time");
   if (result == GL_WAIT_FAILED) context.check();
   gl.DeleteSync(fence);
+}
+
+UploadRing::~UploadRing() { release_slots(); }
+
+void UploadRing::release_slots() {
+  if (!context_.make_current()) return;
+  for (GLsync& fence : in_use_)
+    if (fence != nullptr) context_.gl().DeleteSync(std::exchange(fence, nullptr));
+}
+
+std::byte* UploadRing::next(std::size_t bytes) {
+  if (bytes > slot_bytes_ || slot_bytes_ == 0) {
+    release_slots();  // the old buffer lives until the GPU has read it
+    slot_bytes_ = (std::max<std::size_t>(bytes, 1) * 3 / 2 + 255) / 256 * 256;
+    mapped_ = MappedBuffer(context_, kSlots * slot_bytes_, GL_MAP_WRITE_BIT);
+  }
+  slot_ = (slot_ + 1) % kSlots;
+  if (in_use_[slot_] != nullptr) wait(context_, std::exchange(in_use_[slot_], nullptr));
+  if (context_.lost()) return nullptr;
+  return mapped_.data + offset();
+}
+
+void UploadRing::sent() {
+  in_use_[slot_] = context_.gl().FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+}
+
+PassTimer::PassTimer(Context& context, bool on) : context_(context), on_(on) {
+  if (!on) return;
+  for (Query& query : queries_) {
+    GLuint name = 0;
+    context.gl().CreateQueries(GL_TIME_ELAPSED, 1, &name);
+    query = Query(context, name);
+  }
+}
+
+void PassTimer::begin(Pass pass) {
+  if (on_) context_.gl().BeginQuery(GL_TIME_ELAPSED, queries_[static_cast<int>(pass)].name());
+}
+
+void PassTimer::end(Pass pass) {
+  if (!on_) return;
+  context_.gl().EndQuery(GL_TIME_ELAPSED);
+  used_[static_cast<int>(pass)] = true;
+}
+
+PassTimes PassTimer::take() {
+  PassTimes times{};
+  for (std::size_t i = 0; i < times.size() && context_.make_current(); ++i) {
+    if (!std::exchange(used_[i], false)) continue;
+    GLuint64 elapsed_ns = 0;
+    context_.gl().GetQueryObjectui64v(queries_[i].name(), GL_QUERY_RESULT, &elapsed_ns);
+    times[i] = static_cast<double>(elapsed_ns) / 1000;
+  }
+  return times;
 }
 
 }  // namespace handcast::renderer::gl

@@ -5,17 +5,68 @@
 #include <span>
 #include <vector>
 
+#include "renderer/base/image.hpp"
 #include "renderer/draw/cpu/fill_table.hpp"
 #include "renderer/draw/cpu/raster.hpp"
 #include "renderer/draw/cpu/warp_cells.hpp"
-#include "renderer/draw/gl/hand_assets.hpp"
-#include "renderer/draw/gl/layers.hpp"
+#include "renderer/draw/gl/objects.hpp"
 #include "renderer/draw/gl/program.hpp"
-#include "renderer/draw/gl/upload_ring.hpp"
 #include "renderer/draw/painter.hpp"
 
 /// The passes of the painter on the GPU. Every region must be within the image. One thread.
 namespace handcast::renderer::gl {
+
+/// The parts of a hand that do not change from frame to frame, in the GPU's memory.
+struct HandAssets {
+  Buffer vertices;             ///< per vertex: texture coordinates (2 floats), chart (uint)
+  Buffer triangles;            ///< three indices of 16 bits each
+  GLsizei index_count = 0;     ///< three times the number of triangles
+  Image2d content;             ///< R32UI: MipChain::texels()
+  glm::ivec4 picture{};        ///< see `picture` in shaders/common.glsl
+  std::uint64_t revision = 0;  ///< DrawnHand::revision of the copy
+  std::uint64_t used = 0;      ///< number of the last draw that used it
+
+  /// Bytes of a vertex.
+  static constexpr GLsizei kVertexBytes = 12;
+};
+
+/// Keeps the assets of the hands drawn last, by DrawnHand::revision.
+class AssetCache {
+ public:
+  /// Without assets.
+  explicit AssetCache(Context& context) : context_(context) {}
+
+  /// The assets of each of up to four hands, copied if they are new. Valid until the next call.
+  std::span<const HandAssets* const> find(std::span<const DrawnHand> hands);
+
+ private:
+  static constexpr std::size_t kKept = 8;
+
+  HandAssets& assets_of(const DrawnHand& hand);
+  HandAssets copy(const DrawnHand& hand);
+
+  Context& context_;
+  std::vector<std::unique_ptr<HandAssets>> kept_;
+  std::vector<const HandAssets*> found_;
+  std::uint64_t draws_ = 0;
+};
+
+/// The drawing between the passes, in the projector's size: the planes of cpu::FrameBuffer. Row 0
+/// is the top row, as in all images.
+struct Layers {
+  /// A dark drawing. `depth`: a texture for the framebuffer; layers may share it.
+  Layers(Context& context, int width, int height, GLuint depth);
+
+  Image2d uv;      ///< RG32F: texture coordinates; undefined where dark
+  Image2d tag;     ///< RGBA8UI: surface id (0 where dark), shading factor, level of the picture
+  Image2d colour;  ///< R32UI: RGBA8 with red in the lowest byte; 0 where dark
+  /// Has `uv`, `tag` and `colour` as colour attachments 0, 1 and 2.
+  Framebuffer framebuffer;
+};
+
+/// Prepares the framebuffer for a pass that changes `region` only, and makes the region dark and
+/// infinitely far.
+void begin_drawing(Context& context, const Layers& layers, const Rect& region);
 
 /// Draws the hands: corners are snapped, and the far side is left out, as by the cpu painter, so
 /// that both light the same pixels.
@@ -97,6 +148,36 @@ class Filler {
   cpu::FillTable table_;
   Buffer words_, list_, counts_, limits_, shares_;
   MappedBuffer counts_read_;
+};
+
+/// Copies of the layers in the processor's memory. Only what changed since the last copy is read
+/// back.
+class ReadBack {
+ public:
+  /// Copies of a dark drawing of this size.
+  ReadBack(Context& context, int width, int height);
+
+  /// Notes that `region` was drawn into.
+  void changed(const Rect& region);
+  /// Issues the commands that copy the changed colours. They are in colour() after wait().
+  void queue_colour(const Layers& layers);
+  /// Copies the changed colours, texture coordinates or surface ids, and waits for them.
+  /// @{
+  View<const std::uint32_t> colour(const Layers& layers);
+  View<const glm::vec2> uv(const Layers& layers);
+  View<const SurfaceId> surface(const Layers& layers);
+  /// @}
+
+ private:
+  void read(const Layers& layers, GLenum attachment, const Rect& region, GLenum format, GLenum type,
+            void* pixels) const;
+
+  Context& context_;
+  int width_, height_;
+  MappedBuffer colour_;
+  Image<glm::vec2> uv_;
+  Image<SurfaceId> surface_;
+  Rect stale_colour_, stale_uv_, stale_surface_;
 };
 
 }  // namespace handcast::renderer::gl

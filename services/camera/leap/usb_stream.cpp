@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/leap/usb_stream.hpp"
-
 #include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
@@ -10,6 +8,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "services/camera/leap/session.hpp"
 #include "services/camera/leap/usb_handle.hpp"
 
 namespace handcast::camera::leap {

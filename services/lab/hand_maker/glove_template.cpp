@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/lab/hand_maker/glove_template.hpp"
-
 #include <algorithm>
 #include <map>
+
+#include "services/lab/hand_maker/glove_layout.hpp"
 
 namespace handcast::renderer {
 

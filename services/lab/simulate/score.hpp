@@ -1,13 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 
 #include "calib/sub_frames.hpp"
 #include "config/rig.hpp"
 #include "ipc/base/result.hpp"
-#include "services/lab/simulate/virtual_rig.hpp"
+#include "services/lab/simulate/light_moment.hpp"
+#include "services/lab/simulate/options.hpp"
+#include "services/lab/simulate/second_view.hpp"
+#include "services/lab/simulate/sensor_feed.hpp"
 
 namespace handcast::simulate {
+
+/// The parts of a run in virtual time.
+struct VirtualRig {
+  std::unique_ptr<twin::Twin> twin;              ///< must outlive the other two
+  std::unique_ptr<renderer::Pipeline> pipeline;  ///< the cascade
+  std::unique_ptr<FrameDetector> detector;       ///< must be moved into the feed
+  std::optional<pose::Lifter> lifter;            ///< the same; empty if the rig has a tracker
+  std::shared_ptr<SecondView> second;            ///< the same; null without pose.backend "stereo"
+};
+/// Opens the parts for a rig. Errors: those of Twin::create, Pipeline::create and
+/// open_frame_detector.
+Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration);
+
+/// Called after each projector frame with the virtual time done so far, warm-up included.
+using OnProgress = std::function<void(double done_s)>;
+
+/// Runs the warm-up and the scored time of the options, and passes the ticks of the latter to
+/// `on_tick`. Stops at the first error of `on_tick` and returns it.
+Result<void> run_ticks(const Options& options, Simulation& simulation,
+                       const std::function<Result<void>(const Tick&)>& on_tick,
+                       const OnProgress& on_progress = {});
+
+/// The light of the same run without the timed faults. Takes as long as the run itself. Errors: as
+/// open_virtual_rig.
+Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig,
+                                                       const calib::Calibration& calibration,
+                                                       const Options& options,
+                                                       const OnProgress& on_progress = {});
 
 /// Runs the rig on its twin in virtual time and returns the metrics of `simulate --json`: those of
 /// twin::Metrics, and "rig", "motion", "mesh", "speed", "seed", "seconds", "software_ms",

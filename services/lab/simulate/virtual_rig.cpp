@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/lab/simulate/virtual_rig.hpp"
-
 #include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "services/lab/simulate/recovery.hpp"
+#include "services/lab/simulate/score.hpp"
 
 namespace handcast::simulate {
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/lab/training/light.hpp"
-
 #include <algorithm>
 
 #include "renderer/base/clones.hpp"
+#include "services/lab/training/scene.hpp"
 
 namespace handcast::landmarks::training {
 namespace {

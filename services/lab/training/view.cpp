@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/lab/training/view.hpp"
-
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "services/lab/training/scene.hpp"
 #include "services/landmarks/models/handcast_network.hpp"
 
 namespace handcast::landmarks::training {

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/landmarks/finder/bright_hands.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "renderer/mask/threshold.hpp"
+#include "services/landmarks/finder/hand_finder.hpp"
 
 namespace handcast::landmarks {
 namespace {

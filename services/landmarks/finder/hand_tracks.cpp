@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/landmarks/finder/hand_tracks.hpp"
-
 #include <algorithm>
+
+#include "services/landmarks/finder/hand_finder.hpp"
 
 namespace handcast::landmarks {
 namespace {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,11 +15,60 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "services/pose/leapc/declarations.hpp"
-#include "services/pose/leapc/devices.hpp"
-#include "services/pose/leapc/event_reader.hpp"
 #include "services/pose/leapc/library.hpp"
 
 namespace handcast::pose::leapc {
+
+/// The devices that the service has announced on one connection. One thread.
+class Devices {
+ public:
+  /// `wanted`: the serial number of the device whose frames are asked for; empty: the service
+  /// chooses. `call` must outlive it.
+  Devices(const Functions& call, std::string wanted) : call_(call), wanted_(std::move(wanted)) {}
+  Devices(const Devices&) = delete;
+  Devices& operator=(const Devices&) = delete;
+  ~Devices() { clear(); }
+
+  /// A device was attached: its serial number is read and logged; a wanted one is subscribed to.
+  void attached(ConnectionHandle connection, const DeviceEvent& event);
+  /// A device is gone.
+  void lost(const DeviceEvent& event);
+  /// The connection is gone, and all devices with it.
+  void clear();
+
+  /// Whether frames of this device, 0 if the message does not say, are to be used.
+  bool is_wanted(std::uint32_t id) const;
+  /// Why no frames can come; empty if they can.
+  std::string trouble() const;
+
+ private:
+  struct Device {
+    DeviceHandle handle = nullptr;  ///< open if it is subscribed to
+    std::string serial;
+  };
+
+  std::string serial_of(DeviceHandle device) const;
+  bool is_wanted(const Device& device) const { return wanted_.empty() || device.serial == wanted_; }
+
+  const Functions& call_;
+  std::string wanted_;
+  std::map<std::uint32_t, Device> devices_;  ///< by the service's id
+};
+
+/// A tracking event with the hands of a rig. Nothing in it points into the library.
+struct Tracked {
+  std::int64_t frame_id = 0;
+  std::int64_t stamp_us = 0;  ///< by the service's clock
+  msg::HandPoses poses;       ///< without header; at most one hand of each side
+};
+
+/// Reads a message of kind kTracking. Of several hands of one side, the one that has been visible
+/// for longest is taken. Errors (bad_data): memory that cannot be read, numbers that are not
+/// finite, more hands than any device sees.
+Result<Tracked> read_tracking(const Message& message);
+
+/// The joints of one hand of the library. Errors: bad_data (a number is not finite, or no side).
+Result<msg::HandPose> pose_of(const Hand& hand);
 
 /// Maps the time stamps of Ultraleap's service to CLOCK_MONOTONIC with the library's clock rebaser.
 /// A stamp that it maps to a time after the arrival, or to one that is long past, cannot be of the

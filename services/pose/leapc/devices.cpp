@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/pose/leapc/devices.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "services/pose/leapc/connection.hpp"
 
 namespace handcast::pose::leapc {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/pose/leapc/event_reader.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "services/joints/leap_hand.hpp"
+#include "services/pose/leapc/connection.hpp"
 #include "services/pose/leapc/library.hpp"
 
 namespace handcast::pose::leapc {

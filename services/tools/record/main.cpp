@@ -6,7 +6,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "services/tools/record/npy_folder.hpp"
-#include "services/tools/record/session.hpp"
+#include "services/tools/record/recorder.hpp"
 
 static int complain(int exit_code, const std::string& sentence) {
   fmt::print(stderr, "handcast record: {}\n", sentence);

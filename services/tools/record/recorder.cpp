@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/record/recorder.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <thread>
 #include <utility>
 
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
+#include "config/settings/frozen_file.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/client/rig_ring.hpp"
+#include "ipc/control/choose_rig.hpp"
+#include "ipc/control/control_client.hpp"
+#include "ipc/daemon/stop_signal.hpp"
+#include "ipc/msg/test_picture.hpp"
+#include "services/recording/about.hpp"
+#include "services/tools/record/npy_folder.hpp"
 
 namespace handcast::record {
 namespace {
@@ -113,6 +126,120 @@ Result<std::string> Recorder::finish() {
   if (!well_ && !rig_is_down) return tl::make_unexpected(well_.error());
   if (!finished) return tl::make_unexpected(std::move(finished.error()));
   return reason;
+}
+
+namespace {
+
+/// Memory for messages that are not written yet, of one ring: half a second of images.
+constexpr std::size_t kMostBytes = std::size_t{128} << 20;
+
+/// The settings of the rig as it runs. Errors: those of ask_for_rig(), parse_rig().
+Result<config::Rig> settings_of(const std::string& rig) {
+  const auto text = control::ask_for_rig(rig);
+  if (!text) return tl::make_unexpected(text.error());
+  return config::parse_rig(*text, "applied rig");
+}
+
+/// The calibration file, as the services have read it: with the same text it has the same id.
+Result<std::string> calibration_of(const config::Rig& rig) {
+  if (rig.calibration.empty()) return calib::print_calibration(calib::reference_rig());
+  auto file = config::read_file_or_frozen(rig.calibration);
+  if (!file) return tl::make_unexpected(file.error());
+  return std::move(file->text);
+}
+
+/// What a recording says of its rig. Without its settings, the images are recorded all the same.
+recording::RecordingWriter::About about_of(const std::string& name) {
+  auto rig = settings_of(name);
+  if (!rig) {
+    log::warning("record: the recording has no settings and no calibration: {}", rig.error().what);
+    return {name, "# " + rig.error().what + "\n", ""};
+  }
+  auto calibration = calibration_of(*rig);
+  if (!calibration) {
+    log::warning("record: the recording has no calibration: {}", calibration.error().what);
+    return {name, config::print_rig(*rig), ""};
+  }
+  rig->calibration = std::string(recording::kCalibrationFile);
+  return {name, config::print_rig(*rig), std::move(*calibration)};
+}
+
+Result<std::vector<std::unique_ptr<Feed>>> open_feeds(const std::string& rig,
+                                                      const std::vector<std::string>& streams) {
+  const auto begin_ns = now_ns();
+  std::vector<std::unique_ptr<Feed>> feeds;
+  for (const auto& name : streams) {
+    auto feed = open_feed(rig, name, {feeds.size(), kMostBytes, begin_ns});
+    if (!feed) return tl::make_unexpected(std::move(feed.error()));
+    feeds.push_back(std::move(*feed));
+  }
+  return feeds;
+}
+
+/// What is said once a second, on one line.
+class Progress {
+ public:
+  void look(const Recorder::Totals& totals) const {
+    if (!is_terminal_) return;
+    std::uint64_t bytes = 0, lost = 0, messages = 0;
+    for (const auto& total : totals)
+      bytes += total.bytes, lost += total.lost, messages += total.messages;
+    const double seconds = ns_to_seconds(now_ns() - begin_ns_);
+    log::put(fmt::format("\r{:.0f} s: {} messages, {:.1f} MB, {:.0f} MB/min, {} lost   ", seconds,
+                         messages, 1e-6 * static_cast<double>(bytes),
+                         60e-6 * static_cast<double>(bytes) / std::max(seconds, 0.1), lost));
+  }
+  void end() const {
+    if (is_terminal_) log::put("\n");
+  }
+  double seconds() const { return ns_to_seconds(now_ns() - begin_ns_); }
+
+ private:
+  bool is_terminal_ = ::isatty(STDERR_FILENO) == 1;
+  std::int64_t begin_ns_ = now_ns();
+};
+
+void print_totals(const Recorder::Totals& totals, double seconds) {
+  fmt::print("{:<20} {:>10} {:>8} {:>10} {:>10}\n", "ring", "messages", "lost", "MB", "MB/min");
+  for (const auto& total : totals) {
+    const double megabytes = 1e-6 * static_cast<double>(total.bytes);
+    fmt::print("{:<20} {:>10} {:>8} {:>10.1f} {:>10.1f}\n", total.stream, total.messages,
+               total.lost, megabytes, 60 * megabytes / seconds);
+  }
+}
+
+}  // namespace
+
+Result<void> record(const Options& options) {
+  const auto rig = control::choose_rig(options.rig);
+  if (!rig) return tl::make_unexpected(rig.error());
+  auto there = client::stream_names(*rig);
+  if (!there) return tl::make_unexpected(there.error());
+  std::erase(*there, msg::kTestPictures);  // projections have what was shown
+  const auto streams = choose(options.rings, *there);
+  if (!streams) return tl::make_unexpected(streams.error());
+  auto writer = recording::RecordingWriter::create(options.folder, about_of(*rig), *streams);
+  if (!writer) return tl::make_unexpected(writer.error());
+  auto feeds = open_feeds(*rig, *streams);
+  if (!feeds) return tl::make_unexpected(feeds.error());
+
+  daemon::install_stop_signals();
+  std::signal(SIGHUP, [](int) { std::raise(SIGTERM); });  // the terminal was closed
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of write()
+  Recorder recorder(std::move(*feeds), std::move(*writer));
+  const Progress progress;
+  Recorder::Totals totals;
+  const auto is_over = [&] {
+    return daemon::stop_requested() ||
+           (options.seconds > 0 && progress.seconds() >= options.seconds);
+  };
+  const auto ended = recorder.run(is_over, [&](const auto& now) { progress.look(totals = now); });
+  progress.end();
+  print_totals(totals, ended ? ended->seconds : progress.seconds());
+  if (!ended) return tl::make_unexpected(ended.error());
+  fmt::print("{}: {:.1f} s recorded, until {}\n", options.folder.string(), ended->seconds,
+             ended->reason);
+  return options.npy ? write_npy_folder(options.folder) : Result<void>();
 }
 
 }  // namespace handcast::record

@@ -10,6 +10,7 @@
 #include "ipc/base/result.hpp"
 #include "services/recording/recording_writer.hpp"
 #include "services/tools/record/feed.hpp"
+#include "services/tools/record/options.hpp"
 
 namespace handcast::record {
 
@@ -49,5 +50,10 @@ class Recorder {
   Totals totals_;      ///< so far
   Result<void> well_;  ///< the first error
 };
+
+/// Records a rig as the command line says, with a line of progress on a terminal and a table at the
+/// end. Errors: unavailable (no rig is up; the disk is full), bad_config (the folder or a ring
+/// cannot be taken), those of write_npy_folder().
+Result<void> record(const Options& options);
 
 }  // namespace handcast::record

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "renderer/filter/finger_faults.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
-#include "renderer/filter/finger_order.hpp"
-#include "renderer/filter/finger_steps.hpp"
 
 /// @file
 /// Fingers that a detector takes for others: a hand whose landmarks are 40 px apart.

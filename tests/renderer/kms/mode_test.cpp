@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/kms/mode.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "renderer/kms/display.hpp"
 
 namespace handcast::renderer::kms {
 namespace {

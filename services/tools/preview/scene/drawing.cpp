@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/preview/scene/drawing.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "ipc/msg/largest_images.hpp"
+#include "services/tools/preview/scene/scene_maker.hpp"
 
 namespace handcast::preview {
 namespace {

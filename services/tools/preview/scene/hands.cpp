@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/preview/scene/hands.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "renderer/predict/plausible_pose.hpp"
 #include "services/tools/preview/scene/scene.hpp"
+#include "services/tools/preview/scene/scene_maker.hpp"
 
 namespace handcast::preview {
 namespace {

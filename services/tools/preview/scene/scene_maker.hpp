@@ -1,22 +1,82 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstdint>
+#include <deque>
 #include <glm/glm.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "calib/calibration.hpp"
 #include "config/rig.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/projection.hpp"
 #include "renderer/base/image.hpp"
+#include "renderer/base/similarity.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/mask/hand_mask.hpp"
-#include "services/tools/preview/scene/drawing.hpp"
-#include "services/tools/preview/scene/hands.hpp"
+#include "renderer/predict/hand_track.hpp"
 #include "services/tools/preview/scene/scene.hpp"
 
 namespace handcast::preview {
+
+/// The meshes of both hands, by side.
+using Meshes = std::array<renderer::HandMesh, msg::kMaxHands>;
+
+/// True if size and region of the projector's image make sense; they come from a ring.
+bool is_sound(const msg::Projection& projection);
+
+/// The pixels of the projector that the drawn hands cover before the fill: 255, all others 0.
+/// Computed from the landings in the message. Hands whose vertices are not those of their mesh, and
+/// triangles that are absurdly large or not finite, are left out. `projection`: see is_sound().
+renderer::Image<std::uint8_t> coverage(const msg::Projection& projection, const Meshes& meshes);
+
+/// The edges of the drawn hand `hand` of the projection whose triangles face the camera, in
+/// pixels of the camera's image at the time of the light. Leaves out what coverage() does.
+std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedHand& hand,
+                                                           const Meshes& meshes,
+                                                           const calib::Calibration& calibration);
+
+/// The whole image of the projector, black and transparent outside of the lit region.
+renderer::Texture whole_light(const msg::Projection& projection);
+
+/// The motion of the hands by the tracker, and the newest landmarks. One thread.
+class Hands {
+ public:
+  /// Without messages. Copies both arguments.
+  Hands(const config::Predict& predict, const calib::Calibration& calibration);
+
+  /// Adds a message. Poses and landmarks that cannot be those of a hand are left out.
+  /// @{
+  void push(const msg::HandPoses& poses);
+  void push(const msg::Landmarks& landmarks);
+  /// @}
+
+  /// The pose of a hand at a time, tracker space. Empty without a sample in the 0.2 s before it.
+  std::optional<msg::HandPose> pose_at(msg::Side side, std::int64_t time_ns) const;
+  /// How far the landmarks of a hand are from those of the tracker, undistorted camera px. Empty
+  /// if either is unknown.
+  std::optional<renderer::LandmarkPoints> offset_at(msg::Side side, std::int64_t time_ns) const;
+  /// The motion of a hand in the image between two times. Empty if it is unknown.
+  std::optional<renderer::Similarity> motion(msg::Side side, std::int64_t from_ns,
+                                             std::int64_t to_ns) const;
+  /// Joints and landmarks of a hand at a time. Empty if it has neither.
+  std::optional<ShownHand> at(msg::Side side, std::int64_t time_ns) const;
+
+ private:
+  const renderer::HandTrack& track_of(msg::Side side) const {
+    return tracks_[static_cast<std::size_t>(side)];
+  }
+  const msg::Landmarks* detection_near(msg::Side side, std::int64_t time_ns) const;
+  std::vector<glm::vec2> joints_of(const msg::HandPose& pose) const;
+  void show_landmarks(std::int64_t time_ns, ShownHand& hand) const;
+
+  calib::Calibration calibration_;
+  std::array<renderer::HandTrack, msg::kMaxHands> tracks_;  ///< by side
+  std::deque<msg::Landmarks> detections_;                   ///< oldest first
+};
 
 /// What the messages of a rig refer to: its geometry, its settings and the meshes that it draws.
 struct World {

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <thread>
 
-#include "renderer/draw/choose/contest.hpp"
 #include "renderer/draw/choose/open_painter.hpp"
 #include "renderer/draw/cpu/cpu_painter.hpp"
 #include "tests/renderer/draw/painter_scene.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/filter/landmarks_alone.hpp"
+#include "renderer/filter/offset_filter.hpp"
 
 #include <algorithm>
 
