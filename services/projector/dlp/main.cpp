@@ -101,17 +101,20 @@ static std::vector<const char*> without_safe(int argc, char** argv) {
 }
 
 int main(int argc, char** argv) {
-  const daemon::ServiceDescription description{
-      .name = "dlp",
-      .summary = "Commands the controller of a DLP projector: LEDs, mode, patterns.",
-      .paced_by = "a clock, once a second",
-      .backends = service::describe_rows(dlp::dlp_backends())};
+  const service::Instance dlp[]{
+      {.description = {.name = "dlp",
+                       .summary =
+                           "Commands the controller of a DLP projector: LEDs, mode, patterns.",
+                       .paced_by = "a clock, once a second",
+                       .backends = service::describe_rows(dlp::dlp_backends())},
+       .body = run_dlp,
+       .check = check}};
   if (const auto words = without_safe(argc, argv); !words.empty()) {
     log::set_program("dlp");
     return run_program("handcast-dlp", argc, argv, [&](int, char**) {
       return make_safe(
-          must(service::parse_options(description, static_cast<int>(words.size()), words.data())));
+          must(service::parse_options(dlp, static_cast<int>(words.size()), words.data())));
     });
   }
-  return service::run(description, argc, argv, run_dlp, check);
+  return service::run(dlp, argc, argv);
 }
