@@ -177,9 +177,9 @@ TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
                {"observer.enabled", "observer.process.standby"});
 }
 
-TEST(Fingerprint, TheExporterDependsOnItsPort) {
+TEST(Fingerprint, TheExporterDependsOnItsPortAndOnWhatEveryServiceReads) {
   if (!built().contains("exporter")) GTEST_SKIP() << "this build has no exporter";
-  EXPECT_THAT(read_by("exporter", {}), UnorderedElementsAreArray({"supervisor.metrics_port"}));
+  expect_reads("exporter", {}, {"supervisor.metrics_port"});
 }
 
 config::Rig commanded() {
