@@ -76,11 +76,12 @@ void CommandLine::add(std::string usage, bool& given, std::string help) {
 
 void CommandLine::add_number(std::string usage, std::function<void(double)> set, std::string help,
                              const Number& number) {
-  const auto [range, usual, is_whole] = number;
+  const auto& range = number.range;
   help += fmt::format(" ({} to {}", range.least, range.most);
-  if (usual >= range.least && usual <= range.most) help += fmt::format("; default: {}", usual);
-  const auto parse = [range, is_whole, set = std::move(set)](const std::string& text) {
-    return parse_number(text, range, is_whole).map(set);
+  if (number.usual >= range.least && number.usual <= range.most)
+    help += fmt::format("; default: {}", number.usual);
+  const auto parse = [number, set = std::move(set)](const std::string& text) {
+    return parse_number(text, number.range, number.is_whole).map(set);
   };
   add(std::move(usage), Setter(parse), help + ")");
 }

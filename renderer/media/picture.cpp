@@ -24,12 +24,30 @@ namespace {
 
 constexpr std::uint32_t kOpaque = 0xff000000u;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
-/// Memory for the texts and profiles of a file, which may be packed to a thousandth.
-constexpr std::size_t kMostTexts = 16 << 20;
+/// Memory for the chunks of a file beside its pixels, which may be packed to a thousandth.
+constexpr std::size_t kMostChunks = 16 << 20;
 constexpr double kScreenGamma = 2.2;
 
-/// A PNG file whose header has been read. Its bytes must outlive the object.
+/// The bytes without the chunks of text, which the decoder would inflate: thousands of them can
+/// take minutes. Bytes that are no chunks are left to the decoder.
+std::string without_texts(std::string_view bytes) {
+  constexpr std::size_t kFrame = 12;  // length, type and checksum of a chunk
+  std::string kept(bytes.substr(0, kPngSignature.size()));
+  bytes.remove_prefix(kept.size());
+  while (bytes.size() >= kFrame) {
+    std::size_t length = kFrame;
+    for (int i = 0; i < 4; ++i)
+      length += std::size_t{static_cast<std::uint8_t>(bytes[i])} << (24 - 8 * i);
+    const auto type = bytes.substr(4, 4), chunk = bytes.substr(0, length);
+    if (type != "tEXt" && type != "zTXt" && type != "iTXt") kept += chunk;
+    bytes.remove_prefix(chunk.size());
+  }
+  return kept += bytes;
+}
+
+/// A PNG file whose header has been read.
 struct PngFile {
+  std::unique_ptr<const std::string> bytes;  ///< which the decoder reads
   std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)> png;
   spng_ihdr header{};
   double gamma = 0;  ///< 0 if the values are those of sRGB
@@ -55,10 +73,11 @@ double gamma_of(spng_ctx* png, int bit_depth) {
 }
 
 Result<PngFile> open_png(std::string_view bytes, const std::filesystem::path& file) {
-  PngFile opened{{spng_ctx_new(0), spng_ctx_free}};
+  PngFile opened{std::make_unique<const std::string>(without_texts(bytes)),
+                 {spng_ctx_new(0), spng_ctx_free}};
   auto* png = opened.png.get();
-  spng_set_chunk_limits(png, kMostPicture, kMostTexts);
-  spng_set_png_buffer(png, bytes.data(), bytes.size());
+  spng_set_chunk_limits(png, kMostPicture, kMostChunks);
+  spng_set_png_buffer(png, opened.bytes->data(), opened.bytes->size());
   if (spng_get_ihdr(png, &opened.header) != 0) return broken(file);
   const auto width = opened.header.width, height = opened.header.height;
   if (std::max(width, height) > kLargestSide)

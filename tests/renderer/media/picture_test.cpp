@@ -73,14 +73,14 @@ TEST_F(Png, ChunksThatNoPixelNeedsAreLeftOut) {
 }
 
 /// Together they would take 8 GB.
-TEST_F(Png, TextsThatInflateToGigabytesAreRefused) {
+TEST_F(Png, TextsThatInflateToGigabytesAreLeftOut) {
   const auto text =
       chunk("zTXt", "k" + std::string(2, '\0') + compressed(std::string(7'900'000, 'a')));
   std::string texts;
-  for (int i = 0; i < 2; ++i) texts += text;
-  EXPECT_TRUE(read(picture(texts, "")));
-  for (int i = 2; i < 999; ++i) texts += text;
-  EXPECT_FALSE(read(picture(texts, "")));
+  for (int i = 0; i < 999; ++i) texts += text;
+  const auto image = read(picture(texts, ""));
+  ASSERT_TRUE(image) << image.error().what;
+  EXPECT_EQ(image->at(4, 2), 4);
 }
 
 TEST_F(Png, ImageDataBeyondTheLastPixelDoesNoHarm) {

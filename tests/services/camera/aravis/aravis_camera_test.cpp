@@ -192,7 +192,7 @@ TEST_F(AravisCamera, ARefusedSettingIsNamedWithTheRangeOfTheCamera) {
                 c.exposure_ms = 100;
                 c.rate_hz = 2000;
               }),
-              HasSubstr("camera."));
+              HasSubstr("rate_hz: 2000 Hz is outside"));
 }
 
 TEST_F(AravisCamera, AnImageOfTheCalibrationThatTheSensorDoesNotHaveIsRefused) {
