@@ -138,17 +138,24 @@ const Landmarks& landmarks_at(const Rig& rig, Viewpoint at) {
   return at == Viewpoint::first ? rig.landmarks : rig.landmarks2;
 }
 
-Process process_of(const Rig& rig, std::string_view service) {
-  if (service == "camera") return rig.camera.process;
-  if (service == "camera2") return rig.camera2.process;
-  if (service == "pose") return rig.pose.process;
-  if (service == "landmarks") return rig.landmarks.process;
-  if (service == "landmarks2") return rig.landmarks2.process;
-  if (service == "projector") return rig.projector.process;
-  if (service == "dlp") return rig.dlp.process;
-  if (service == "observer") return rig.observer.process;
-  return {};
+static const Process* find_process(const Rig& rig, std::string_view service) {
+  if (service == "camera") return &rig.camera.process;
+  if (service == "camera2") return &rig.camera2.process;
+  if (service == "pose") return &rig.pose.process;
+  if (service == "landmarks") return &rig.landmarks.process;
+  if (service == "landmarks2") return &rig.landmarks2.process;
+  if (service == "projector") return &rig.projector.process;
+  if (service == "dlp") return &rig.dlp.process;
+  if (service == "observer") return &rig.observer.process;
+  return nullptr;
 }
+
+Process process_of(const Rig& rig, std::string_view service) {
+  const auto* process = find_process(rig, service);
+  return process ? *process : Process();
+}
+
+bool has_process(std::string_view service) { return find_process(Rig(), service) != nullptr; }
 
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
                       const std::vector<std::string>& settings) {

@@ -81,6 +81,8 @@ const Landmarks& landmarks_at(const Rig& rig, Viewpoint at);
 /// The section [NAME.process] of the service with this name ("camera"); the defaults if there is no
 /// such service.
 Process process_of(const Rig& rig, std::string_view service);
+/// Whether a rig file has a section [NAME.process] for this service.
+bool has_process(std::string_view service);
 
 /// Reads a rig file, applies the measured settings beside it (measured.hpp), and `settings`
 /// ("path=value") on top. Relative paths become absolute: those of the files start at their folder,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "config/rig.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/join.hpp"
 
@@ -14,7 +15,7 @@ daemon::ServiceDescription complete(daemon::ServiceDescription description) {
   auto& settings = description.settings;
   settings.push_back("calibration");
   if (!description.backends.empty()) settings.push_back(description.name + ".backend");
-  settings.push_back(description.name + ".process");
+  if (config::has_process(description.name)) settings.push_back(description.name + ".process");
   return description;
 }
 

@@ -135,7 +135,8 @@ struct Reader {
   template <class T>
   static bool read(const json& value, T& member) {
     if constexpr (std::is_integral_v<T> && sizeof(T) == sizeof(std::uint64_t)) {
-      if (value.is_number_unsigned()) return member = value.get<T>(), true;
+      if (value.is_number_unsigned() || (value.is_number_integer() && value >= 0))
+        return member = value.get<T>(), true;
     }
     if constexpr (std::is_arithmetic_v<T>) {
       if (!value.is_number()) return false;

@@ -78,11 +78,11 @@ TEST(NextSpare, OneThatIsLateOrSilentIsKilledAndReplaced) {
   EXPECT_THAT(late.at(19.9, spare_beating_at(19.9)), IsEmpty());
   EXPECT_THAT(
       late.at(20, spare_beating_at(20)),
-      ElementsAre("warn: the spare of pose was not prepared within 10 at_s; killed", "kill spare"));
+      ElementsAre("warn: the spare of pose was not prepared within 10 s; killed", "kill spare"));
   auto silent = ready_machine(kSparePrepared);
   EXPECT_THAT(silent.at(21.9, spare_beating_at(21.9)), IsEmpty());
   EXPECT_THAT(silent.at(22, spare_beating_at(22)),
-              ElementsAre("warn: the spare of pose has given no sign of life for 2 at_s; killed",
+              ElementsAre("warn: the spare of pose has given no sign of life for 2 s; killed",
                           "kill spare"));
   EXPECT_THAT(silent.at(30, spare_beating_at(30)), IsEmpty());
   EXPECT_THAT(
