@@ -85,8 +85,8 @@ struct Figures {
 /// The status of a rig in the answers of its supervisor, as `handcast status --json` prints it.
 /// @{
 nlohmann::json to_json(Figures figures);
-/// What has another type is left out, and numbers are limited to 0 to 1e9: they may be of a
-/// supervisor of another version.
+/// What has another type is left out, and numbers are limited to 0 to 1e9, counts to 64 bits: they
+/// may be of a supervisor of another version.
 Figures figures_in(const nlohmann::json& status);
 /// @}
 
