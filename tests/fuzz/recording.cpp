@@ -13,17 +13,9 @@
 #include "services/pose/pose_source.hpp"
 #include "tests/fuzz/input.hpp"
 
-namespace handcast::camera {
-Result<std::unique_ptr<Camera>> open_replay(const config::Rig& rig, const calib::Calibration&,
-                                            const std::int64_t& epoch_ns);
-}
 namespace handcast::pose {
 Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const calib::Calibration&,
                                                 const std::int64_t& epoch_ns);
-}
-namespace handcast::landmarks {
-Result<std::unique_ptr<Detector>> open_replay(const config::Rig& rig, const calib::Calibration&,
-                                              const std::int64_t& epoch_ns);
 }
 
 namespace {
@@ -80,6 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto calibration = calib::reference_rig();
   calibration.camera.width_px = calibration.camera.height_px = 16;
   config::Rig rig;
+  rig.camera.backend = rig.landmarks.backend = "replay";
   rig.camera.replay.directory = rig.pose.replay.directory = rig.landmarks.replay.directory =
       folder.path();
   const auto past = Deadline::in(std::chrono::seconds(0));
@@ -90,9 +83,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     (void)(*source)->sample(poses, past);
   msg::CameraFrame frame;
   frame.header.origin_ns = epoch_ns;
-  if (const auto detector = landmarks::open_replay(rig, calibration, epoch_ns))
+  if (const auto detector = landmarks::open_detector(rig, calibration, epoch_ns))
     (void)(*detector)->detect(frame, {}, past);
-  (void)camera::open_replay(rig, calibration, epoch_ns);
+  (void)camera::open_camera(rig, calibration, epoch_ns);
   move(folder.path(), calibration);
   return 0;
 }
