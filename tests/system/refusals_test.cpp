@@ -152,7 +152,7 @@ TEST_F(Refusals, ConfigLooksAtTheFilesOfTrackersAndCamerasWithoutOpeningThem) {
               HasSubstr("none.so: there is no such file"));
   if (has("leap")) {
     EXPECT_THAT(refusal("[camera]\nbackend = \"leap\"\n[camera.leap]\nbring_up = \"none.txt\""),
-                HasSubstr("camera.leap.bring_up: "));
+                HasSubstr("camera 'leap': leap.bring_up: "));
     EXPECT_THAT(refusal("[camera]\nbackend = \"leap\"\n[camera.leap]\nbring_up = \"odd.txt\""),
                 HasSubstr("'dance' is no step"));
     EXPECT_THAT(refusal("[camera]\nbackend = \"leap\"\n[camera2]\nbackend = \"twin\""),
