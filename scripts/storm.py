@@ -73,7 +73,7 @@ class Doubles:
         counts = collections.Counter(role for pid, arguments in processes.items() if pid not in stopped and (role := role_of(arguments)))
         now = time.monotonic()
         for role, count in counts.items():
-            allowed = 2 if role not in ("keeper", "supervisor") else 1  # a worker and its spare
+            allowed = 2 if role not in ("keeper", "supervisor") else 1  # a worker and its standby
             if count <= allowed:
                 self.since.pop(role, None)
             elif now - self.since.setdefault(role, now) > DOUBLE_AFTER_S:

@@ -17,16 +17,16 @@
 ///   env    HANDCAST_RINGS=camera.frames=5,pose.hands=6
 ///              The descriptors of the rings' segments, by stream.
 ///          HANDCAST_READY_FD=7
-///              The daemon writes '\n' here when it is ready. A spare writes 's' when it is
+///              The daemon writes '\n' here when it is ready. A standby writes 's' when it is
 ///              prepared and again every half second until it gets its turn.
 ///          HANDCAST_EPOCH_NS=123456789
 ///              The time of the rig's start (CLOCK_MONOTONIC, ns), the same for every daemon of the
 ///              rig: time zero of the twin and of recordings.
 ///          HANDCAST_STANDBY_FD=8
-///              Set for a spare. It prepares everything that a second process may have, then waits
-///              here for the byte '1', its turn. If the other end is closed, it ends with exit 0.
-///              In its turn, the process that it replaces may be alive and still stopping: it waits
-///              for what that one holds, e.g. the writer lock of a ring.
+///              Set for a standby. It prepares everything that a second process may have, then
+///              waits here for the byte '1', its turn. If the other end is closed, it ends with
+///              exit 0. In its turn, the process that it replaces may be alive and still stopping:
+///              it waits for what that one holds, e.g. the writer lock of a ring.
 ///          HANDCAST_RIG=handcast-1000//twin
 ///              The address of its rig (ipc/control/rig_address.hpp). A daemon does not use it: by
 ///              it the daemons of a rig are found among all processes.
@@ -69,12 +69,12 @@ inline constexpr std::array kHandoverVariables{kRingsVariable,   kReadyVariable,
                                                kStandbyVariable, kRigVariable,   kStateVariable};
 
 inline constexpr char kReadyWord = '\n';    ///< on the ready descriptor
-inline constexpr char kPreparedWord = 's';  ///< on the ready descriptor, from a spare
+inline constexpr char kPreparedWord = 's';  ///< on the ready descriptor, from a standby
 inline constexpr char kTurnWord = '1';      ///< on the standby descriptor
 
 /// The longest time between two messages of a daemon's stage marks.
 inline constexpr std::int64_t kBeatEvery_ns = 100'000'000;
-/// The period in which a prepared spare repeats kPreparedWord.
+/// The period in which a prepared standby repeats kPreparedWord.
 inline constexpr std::int64_t kPreparedEvery_ns = 500'000'000;
 
 /// The stream of a daemon's stage marks, which are also its heart-beat.

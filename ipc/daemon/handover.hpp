@@ -17,7 +17,7 @@ using Rings = std::vector<std::pair<std::string, int>>;
 struct Handover {
   Rings rings;                           ///< HANDCAST_RINGS
   int ready_fd = -1;                     ///< HANDCAST_READY_FD
-  int standby_fd = -1;                   ///< HANDCAST_STANDBY_FD, only for a spare
+  int standby_fd = -1;                   ///< HANDCAST_STANDBY_FD, only for a standby
   std::optional<std::int64_t> epoch_ns;  ///< empty for a daemon that was started by hand
   std::string rig;                       ///< HANDCAST_RIG; "" for a daemon started by hand
   int state_fd = -1;                     ///< HANDCAST_STATE_FD

@@ -80,7 +80,7 @@ Result<UniqueFd> Supervision::ring(std::string_view stream) const {
 // Signals are let in only while it sleeps, so that none is missed between the look at the flag and
 // the sleep. The process ends without destructors: it has nothing to save, and its threads may run.
 void Supervision::await_turn() {
-  if (!is_spare()) return;
+  if (!is_standby()) return;
   {
     const StopsBlocked blocked;
     pollfd turn{.fd = turn_.get(), .events = POLLIN, .revents = 0};

@@ -13,7 +13,7 @@
 namespace handcast::daemon {
 
 /// A daemon's side of the contract with its supervisor (contract.hpp). A daemon that was started by
-/// hand has no supervisor: it is no spare, and what it says goes nowhere. One thread.
+/// hand has no supervisor: it is no standby, and what it says goes nowhere. One thread.
 class Supervision {
  public:
   /// Takes over what the environment hands to this process. `name` is the daemon's: "camera".
@@ -29,14 +29,15 @@ class Supervision {
   /// Whether a ring was handed over.
   bool has_ring(std::string_view stream) const;
 
-  /// Whether this process is a spare whose turn has not come.
-  bool is_spare() const { return static_cast<bool>(turn_); }
-  /// Waits for the turn of a spare, and says meanwhile that it is prepared. Returns at once if this
-  /// is no spare. Ends the process with exit 0 on SIGTERM or SIGINT, and if the supervisor is gone.
+  /// Whether this process is a standby whose turn has not come.
+  bool is_standby() const { return static_cast<bool>(turn_); }
+  /// Waits for the turn of a standby, and says meanwhile that it is prepared. Returns at once if
+  /// this is no standby. Ends the process with exit 0 on SIGTERM or SIGINT, and if the supervisor
+  /// is gone.
   void await_turn();
   /// Until when to wait for what the process that this one replaces still holds: a writer lock, a
   /// port. The supervisor kills a process that does not stop within `stop_s`. In the past if this
-  /// process was no spare.
+  /// process was no standby.
   Deadline predecessor_leaves_by(double stop_s) const;
   /// Tells the supervisor that the daemon works, once.
   void tell_ready();
@@ -53,8 +54,8 @@ class Supervision {
   Rings rings_;
   std::int64_t epoch_ns_ = 0;
   UniqueFd ready_;                       ///< closed when the supervisor has been told
-  UniqueFd turn_;                        ///< of a spare whose turn has not come
-  std::optional<std::int64_t> turn_ns_;  ///< when the turn of a spare came
+  UniqueFd turn_;                        ///< of a standby whose turn has not come
+  std::optional<std::int64_t> turn_ns_;  ///< when the turn of a standby came
   std::int64_t last_beat_ns_ = 0;
 };
 

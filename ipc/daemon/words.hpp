@@ -14,7 +14,7 @@ struct Words {
 /// one.
 Words read_words(int ready_fd);
 
-/// Gives a spare its turn, through the supervisor's end of its standby descriptor. False if it
+/// Gives a standby its turn, through the supervisor's end of its standby descriptor. False if it
 /// cannot be reached.
 bool give_turn(int standby_fd);
 

@@ -49,10 +49,10 @@ void RowSpans::add(int band, float x0, float x1) {
     spans_[band * most_ + count++] = span;
 }
 
-void RowSpans::add(const Flesh& flesh, float margin_px) {
-  const glm::vec2 from = flesh.from_px, to = flesh.to_px, along = to - from;
-  const float from_radius = flesh.from_radius_px + margin_px,
-              to_radius = flesh.to_radius_px + margin_px;
+void RowSpans::add(const Capsule& capsule, float margin_px) {
+  const glm::vec2 from = capsule.from_px, to = capsule.to_px, along = to - from;
+  const float from_radius = capsule.from_radius_px + margin_px,
+              to_radius = capsule.to_radius_px + margin_px;
   const float length = glm::length(along);
   const glm::vec2 across = length > 0 ? glm::vec2(-along.y, along.x) / length : glm::vec2(0);
   const float top = std::min(from.y - from_radius, to.y - to_radius),
@@ -138,9 +138,9 @@ void HandMaskBounds::reset(Rect region, std::size_t shapes) {
   wrists_.clear();
 }
 
-void HandMaskBounds::add(std::span<const Flesh> flesh, float sure_px, float most_px,
+void HandMaskBounds::add(std::span<const Capsule> capsules, float sure_px, float most_px,
                          const Wrist& wrist) {
-  for (const Flesh& one : flesh) {
+  for (const Capsule& one : capsules) {
     sure_.add(one, sure_px);
     most_.add(one, most_px);
   }

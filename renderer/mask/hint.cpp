@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kWrist = 1;
 constexpr double kAlongArm_m = 0.04;
-// Usual and largest error of the expected flesh.
+// Usual and largest error of the expected capsules.
 constexpr float kSure_px = 1, kMost_px = 24;                 ///< with landmarks
 constexpr float kTrackerSure_px = 20, kTrackerMost_px = 50;  ///< with the tracker alone
 
@@ -54,10 +54,10 @@ std::array<float, kLandmarks> scale_of(const calib::CameraModel& camera,
   return px_per_mm;
 }
 
-std::vector<Flesh> flesh_of(const std::vector<glm::vec2>& landmarks_px, glm::vec2 arm_px,
-                            const std::array<float, kLandmarks>& px_per_mm) {
-  std::vector<Flesh> flesh;
-  flesh.reserve(std::size(kBones) + 1);
+std::vector<Capsule> capsules_of(const std::vector<glm::vec2>& landmarks_px, glm::vec2 arm_px,
+                                 const std::array<float, kLandmarks>& px_per_mm) {
+  std::vector<Capsule> capsules;
+  capsules.reserve(std::size(kBones) + 1);
   for (const auto& [from, to, from_mm, to_mm] : kBones) {
     const glm::vec2 along = landmarks_px[to] - landmarks_px[from];
     const float radius_px = to_mm * px_per_mm[to], length_px = glm::length(along);
@@ -65,15 +65,15 @@ std::vector<Flesh> flesh_of(const std::vector<glm::vec2>& landmarks_px, glm::vec
     const bool tip = to % 4 == 0 && length_px > 0;
     const glm::vec2 end_px =
         tip ? landmarks_px[to] - along * (std::min(1.0f, radius_px / length_px)) : landmarks_px[to];
-    flesh.push_back({landmarks_px[from], end_px, from_mm * px_per_mm[from], radius_px});
+    capsules.push_back({landmarks_px[from], end_px, from_mm * px_per_mm[from], radius_px});
   }
-  flesh.push_back({landmarks_px[0], arm_px, kWrist_mm * px_per_mm[0], kWrist_mm * px_per_mm[0]});
-  return flesh;
+  capsules.push_back({landmarks_px[0], arm_px, kWrist_mm * px_per_mm[0], kWrist_mm * px_per_mm[0]});
+  return capsules;
 }
 
-Rect bounds_of(const std::vector<Flesh>& flesh, float margin_px) {
+Rect bounds_of(const std::vector<Capsule>& capsules, float margin_px) {
   glm::vec2 low(1e6f), high(-1e6f);
-  for (const auto& [from, to, from_radius, to_radius] : flesh) {
+  for (const auto& [from, to, from_radius, to_radius] : capsules) {
     low = glm::min(low, glm::min(from - from_radius, to - to_radius));
     high = glm::max(high, glm::max(from + from_radius, to + to_radius));
   }
@@ -109,13 +109,13 @@ std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
   if (glm::length(along) < 2) along = owned.seeds_px[0] - owned.seeds_px[9];
   if (glm::length(along) < 1e-3) along = {0, 1};
 
-  owned.flesh = flesh_of(owned.seeds_px, end, scale_of(calibration.camera, then.depths_m));
+  owned.capsules = capsules_of(owned.seeds_px, end, scale_of(calibration.camera, then.depths_m));
   const float sure_px = has_landmarks ? kSure_px : kTrackerSure_px,
               most_px = has_landmarks ? kMost_px : kTrackerMost_px;
   owned.hint = {
-      bounds_of(owned.flesh, most_px), end, glm::normalize(along), {}, {}, sure_px, most_px};
+      bounds_of(owned.capsules, most_px), end, glm::normalize(along), {}, {}, sure_px, most_px};
   owned.hint.inside_px = owned.seeds_px;
-  owned.hint.flesh = owned.flesh;
+  owned.hint.capsules = owned.capsules;
   return owned;
 }
 

@@ -10,11 +10,11 @@
 
 namespace handcast::renderer {
 
-/// A hint with the seeds and the flesh that it refers to.
+/// A hint with the seeds and the capsules that it refers to.
 struct OwnedHint {
   HandHint hint;                    ///< refers to the members below
   std::vector<glm::vec2> seeds_px;  ///< HandHint::inside_px
-  std::vector<Flesh> flesh;         ///< HandHint::flesh
+  std::vector<Capsule> capsules;    ///< HandHint::capsules
 };
 
 /// Where a hand is expected in an image: `then`, its pose at the exposure, moved by `offset_px`

@@ -173,13 +173,13 @@ void MaskFinder::close_holes(View<std::uint8_t> mask) {
 
 void MaskFinder::bound(std::span<const HandHint> hints, Rect region) {
   std::size_t most = 0;
-  for (const HandHint& hint : hints) most += std::max<std::size_t>(1, hint.flesh.size());
+  for (const HandHint& hint : hints) most += std::max<std::size_t>(1, hint.capsules.size());
   reach_.reset(region, most);
   for (const HandHint& hint : hints)
-    if (hint.flesh.empty())
+    if (hint.capsules.empty())
       reach_.add(hint.region);
     else
-      reach_.add(hint.flesh, hint.sure_px, hint.most_px, {hint.wrist_px, hint.to_elbow});
+      reach_.add(hint.capsules, hint.sure_px, hint.most_px, {hint.wrist_px, hint.to_elbow});
   reach_.settle();
 }
 

@@ -15,7 +15,7 @@
 namespace handcast::renderer {
 
 /// The flesh around one bone in the image: a disc at either end and the convex area between them.
-struct Flesh {
+struct Capsule {
   /// Centres of the discs, image px.
   /// @{
   glm::vec2 from_px, to_px;
@@ -40,8 +40,8 @@ class RowSpans {
  public:
   /// Removes all shapes. `most`: spans per row, at most; more are ignored.
   void reset(Rect region, std::size_t most);
-  /// Adds the flesh of a bone, grown by `margin_px`.
-  void add(const Flesh& flesh, float margin_px);
+  /// Adds the capsule of a bone, grown by `margin_px`.
+  void add(const Capsule& capsule, float margin_px);
   /// Adds a rectangle.
   void add(Rect rect);
   /// Sorts and joins the spans of each row: call it after the last add() and before row().
@@ -77,9 +77,9 @@ class HandMaskBounds {
   /// Removes all hands. `region`: image px. `shapes`: the number of shapes that will be added, at
   /// most.
   void reset(Rect region, std::size_t shapes);
-  /// Adds a hand by its flesh, which grows by `sure_px` for the inner and by `most_px` for the
+  /// Adds a hand by its capsules, which grow by `sure_px` for the inner and by `most_px` for the
   /// outer bound.
-  void add(std::span<const Flesh> flesh, float sure_px, float most_px, const Wrist& wrist);
+  void add(std::span<const Capsule> capsules, float sure_px, float most_px, const Wrist& wrist);
   /// Adds a rectangle that a hand may fill, to both bounds.
   void add(Rect rect);
   /// Ends the additions: call it after the last add() and before the functions below.
@@ -113,8 +113,8 @@ struct HandHint {
   /// Points on the hand (its joints): the seeds of its connected part.
   std::span<const glm::vec2> inside_px;
   /// Contains the whole hand. Empty: the hand may fill its region.
-  std::span<const Flesh> flesh{};
-  /// Usual and largest error of the flesh.
+  std::span<const Capsule> capsules{};
+  /// Usual and largest error of the capsules.
   /// @{
   float sure_px = 0, most_px = 0;
   /// @}

@@ -16,9 +16,9 @@
 namespace handcast::service {
 
 /// One row of a table of back ends: all that is known of a back end outside its own file.
-/// `--backends`, the settings reference, what a reload restarts and how a spare starts follow from
-/// it. `Interface`: the seam (a camera, a pose source, …). `Args`: what every back end of the seam
-/// is opened with.
+/// `--backends`, the settings reference, what a reload restarts and how a standby starts follow
+/// from it. `Interface`: the seam (a camera, a pose source, …). `Args`: what every back end of the
+/// seam is opened with.
 template <class Interface, class... Args>
 struct Backend {
   std::string_view name;      ///< in the rig file
@@ -28,7 +28,7 @@ struct Backend {
   /// The sections and settings it reads, besides those that its service reads with every back end.
   /// A reload restarts the service if one of them changes.
   config::SettingList reads{};
-  /// Only one process at a time can have it open (a device): a spare opens it in its turn.
+  /// Only one process at a time can have it open (a device): a standby opens it in its turn.
   bool exclusive = false;
   /// What `config --check` does instead of open(): it looks at the files that the back end needs
   /// and leaves devices and services alone, which a running rig may use. Errors: those of open()
@@ -105,7 +105,7 @@ Result<T> in_backend(std::string_view service, std::string_view backend, Result<
   return fail_in(fmt::format("{} '{}'", service, backend), std::move(result.error()));
 }
 
-/// Whether a spare must not open this back end before its turn.
+/// Whether a standby must not open this back end before its turn.
 template <class Interface, class... Args>
 bool is_exclusive(std::string_view name, std::span<const Backend<Interface, Args...>> table) {
   for (const auto& row : table)

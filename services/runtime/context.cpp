@@ -31,7 +31,7 @@ Context::Context(const daemon::ServiceDescription& description, config::Rig rig,
       supervision_(daemon::Supervision::from_environment(description.name)) {
   description_.publishes.push_back(daemon::marks_stream_of(description.name));
   wait_ = config::process_of(rig_, description.name).wait;
-  if (!supervision_.is_spare()) open_marks();
+  if (!supervision_.is_standby()) open_marks();
 }
 
 void Context::open_marks() {
@@ -45,7 +45,7 @@ void Context::open_marks() {
 }
 
 void Context::stand_by() {
-  if (!supervision_.is_spare()) return;
+  if (!supervision_.is_standby()) return;
   for (const auto* streams : {&description_.subscribes, &description_.publishes})
     for (const auto& stream : *streams)
       if (auto segment = open_segment(stream)) mapped_.emplace(stream, std::move(*segment));

@@ -45,7 +45,7 @@ class Context {
   /// The time of the rig's start, the same for every daemon of the rig: time zero of the twin.
   std::int64_t epoch_ns() const { return supervision_.epoch_ns(); }
 
-  /// The writer of a ring. A spare waits for its turn first (see stand_by()), and then until the
+  /// The writer of a ring. A standby waits for its turn first (see stand_by()), and then until the
   /// worker that it replaces has left the ring. Errors: bad_config (the description does not name
   /// the ring, or there is none), those of ipc::Writer::attach().
   template <class T>
@@ -65,7 +65,7 @@ class Context {
     return ipc::Reader<T>::attach(std::move(*segment), wait.value_or(wait_));
   }
 
-  /// Waits for the turn of a spare; returns at once in other processes. Call it after all
+  /// Waits for the turn of a standby; returns at once in other processes. Call it after all
   /// preparations that two processes may do at the same time (models, pictures, memory) and before
   /// opening resources that only one process may use: writers, devices. The memory of the rings in
   /// the description is mapped before the wait. A daemon that does not call it waits in its first

@@ -36,7 +36,7 @@ struct Plan {
   std::vector<std::string> arguments, environment;
   std::vector<int> inherited;  ///< descriptors that exec does not close
   Pipe log, ready;
-  Pipe turn;  ///< only for a spare
+  Pipe turn;  ///< only for a standby
 };
 
 tl::unexpected<Error> cannot(std::string_view what) {
@@ -87,7 +87,7 @@ Result<Plan> make_plan(const ChildSpec& spec) {
   plan.log = std::move(*log);
   plan.ready = std::move(*ready);
 
-  if (spec.spare) {
+  if (spec.standby) {
     auto turn = open_pipe(ReadBy::service);
     if (!turn) return tl::make_unexpected(turn.error());
     plan.turn = std::move(*turn);

@@ -27,7 +27,7 @@ struct ChildSpec {
   std::string rig;                     ///< HANDCAST_RIG
   int state_fd = -1;                   ///< HANDCAST_STATE_FD; -1: none
   int rig_fd = -1;                     ///< the applied rig file, which `arguments` name; -1: none
-  bool spare = false;                  ///< the daemon prepares itself and waits for its turn
+  bool standby = false;                ///< the daemon prepares itself and waits for its turn
 };
 
 /// One process of a daemon, the leader of its own session. It continues to run if the supervisor
@@ -65,8 +65,8 @@ class Child {
   int ready_fd() const { return ready_.get(); }
   /// Sends a signal. Does nothing if the process has been reaped.
   void signal(int number);
-  /// Gives a spare its turn. A spare that has not got its turn ends when this object is destroyed
-  /// or the supervisor dies.
+  /// Gives a standby its turn. A standby that has not got its turn ends when this object is
+  /// destroyed or the supervisor dies.
   void give_turn();
 
   /// How the process ended; empty while it lives. Kills the rest of its process group first. The

@@ -81,7 +81,7 @@ void Transition::operator()(const event::Adopted& event) {
 }
 
 void Transition::start(bool on_trial) {
-  if (standby_is_prepared()) return promote(on_trial);
+  if (can_fail_over()) return promote(on_trial);
   begin(Origin::spawned, on_trial);
   act(action::Spawn{});
 }
@@ -109,21 +109,21 @@ void Transition::became_ready(Life life) {
   life.on_trial = false;
   worker_ = worker::Ready{.life = life, .ready_ns = now_, .quiet_from_ns = now_};
   past_.was_ready = true;
-  want_spare(life);
+  want_standby(life);
   act(action::Tell{Notice::ready});
 }
 
 // Stop.
 
 void Transition::operator()(const event::Stop&) {
-  dismiss_spare();
+  dismiss_standby();
   if (life_of(worker_)) return ask_to_stop(worker::Stopping::Then::stay);
   became_stopped();
 }
 
 void Transition::operator()(const event::Restart& event) {
   using Then = worker::Stopping::Then;
-  dismiss_spare();
+  dismiss_standby();
   if (life_of(worker_)) return ask_to_stop(event.on_trial ? Then::start_on_trial : Then::start);
   start(event.on_trial);
 }
@@ -144,14 +144,15 @@ void Transition::operator()(const event::Hurry&) {
     stopping->kill_ns.reset();
     act(action::Kill{});
   }
-  if ((stopping || std::holds_alternative<worker::AwaitingSpare>(worker_)) && is_running(spare_))
-    act(action::KillSpare{});
+  if ((stopping || std::holds_alternative<worker::AwaitingStandby>(worker_)) &&
+      is_running(standby_))
+    act(action::KillStandby{});
 }
 
 /// A service has stopped when both of its processes have ended.
 void Transition::became_stopped() {
-  if (is_running(spare_)) {
-    worker_ = worker::AwaitingSpare{};
+  if (is_running(standby_)) {
+    worker_ = worker::AwaitingStandby{};
     return;
   }
   worker_ = worker::Stopped{};
@@ -168,7 +169,7 @@ void Transition::operator()(const event::Ended& event) {
   if (!stopping) return died(event.exit, true);
   act(action::ReadLastWords{});
   if (stopping->then == Then::stay) return became_stopped();
-  if (stopping->then == Then::hand_over && replacement_ && spare_is_prepared())
+  if (stopping->then == Then::hand_over && replacement_ && standby_is_prepared())
     return promote(replacement_->on_trial);
   start(stopping->then == Then::start_on_trial);
 }
@@ -192,7 +193,7 @@ void Transition::died(Exit exit, bool may_start_at_once) {
   if (decision.action == What::retire) return give_up(exit, worker::Stopped{}, Notice::stopped);
 
   const bool is_quick =
-      decision.action == What::restart && (decision.wait_ns == 0 || standby_is_prepared());
+      decision.action == What::restart && (decision.wait_ns == 0 || can_fail_over());
   if (is_quick && may_start_at_once)
     restart_after_death();
   else
@@ -205,7 +206,7 @@ void Transition::died(Exit exit, bool may_start_at_once) {
 /// A replacement, which may have other settings, still takes over.
 void Transition::give_up(Exit exit, const Worker& end, Notice notice) {
   worker_ = end;
-  if (!replacement_) dismiss_spare();
+  if (!replacement_) dismiss_standby();
   act(action::ReadLastWords{});
   act(action::Warn{
       fmt::format("{} ended ({}) and is not started again", rules_.name, exit.describe())});
@@ -215,8 +216,8 @@ void Transition::give_up(Exit exit, const Worker& end, Notice notice) {
 void Transition::warn_of_death(Exit exit, const Decision& decision) {
   const auto* life = life_of(worker_);
   if (life && life->origin == Origin::promoted)
-    return act(
-        action::Warn{fmt::format("{} died ({}); its spare goes on", rules_.name, exit.describe())});
+    return act(action::Warn{
+        fmt::format("{} died ({}); its standby goes on", rules_.name, exit.describe())});
   const bool degraded = decision.action == Decision::Action::degrade;
   act(action::Warn{fmt::format("{} died ({}){}; started again after {:.0f} ms", rules_.name,
                                exit.describe(), degraded ? ", too often" : "",
@@ -226,7 +227,7 @@ void Transition::warn_of_death(Exit exit, const Decision& decision) {
 // Time.
 
 void Transition::operator()(const event::Tick& event) {
-  tick_spare();
+  tick_standby();
   std::visit([&](auto state) { tick(state, event); }, worker_);  // a copy: worker_ may change
 }
 
@@ -290,13 +291,13 @@ void Transition::operator()(const event::StoodStill& event) {
     ready->quiet_from_ns = now_, ready->inert_from_ns.reset();
   else if (auto* stopping = std::get_if<worker::Stopping>(&worker_); stopping && stopping->kill_ns)
     *stopping->kill_ns += event.span_ns;
-  shift_spare(event.span_ns);
+  shift_standby(event.span_ns);
 }
 
 void Transition::operator()(const event::SettingsChanged&) {
   if (replacement_) return;
-  if (!rules_.wants_standby) return dismiss_spare();
-  if (const auto* ready = std::get_if<worker::Ready>(&worker_)) want_spare(ready->life);
+  if (!rules_.wants_standby) return dismiss_standby();
+  if (const auto* ready = std::get_if<worker::Ready>(&worker_)) want_standby(ready->life);
 }
 
 }  // namespace handcast::supervisor

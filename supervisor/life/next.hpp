@@ -31,8 +31,8 @@ struct Stop {};
 struct Hurry {};
 /// Service::prepare().
 struct Prepare {
-  Replacement how{};           ///< the properties of the replacement
-  bool may_use_spare = false;  ///< a standby has the wanted settings
+  Replacement how{};             ///< the properties of the replacement
+  bool may_use_standby = false;  ///< a standby has the wanted settings
 };
 /// Service::hand_over().
 struct HandOver {};
@@ -72,14 +72,14 @@ struct Ended {
 struct NotStarted {
   Exit exit;  ///< the exit code of the error
 };
-/// The spare reported that it is prepared; it repeats this as its heartbeat.
-struct SpareSpoke {};
-/// The spare ended.
-struct SpareEnded {
+/// The standby reported that it is prepared; it repeats this as its heartbeat.
+struct StandbySpoke {};
+/// The standby ended.
+struct StandbyEnded {
   Exit exit;  ///< how it ended
 };
-/// The spare could not be started.
-struct SpareNotStarted {
+/// The standby could not be started.
+struct StandbyNotStarted {
   std::string why;  ///< the sentence of the error
 };
 /// Time has passed; sent a few dozen times per second.
@@ -97,8 +97,8 @@ struct Tick {
 using Event = std::variant<event::Hold, event::Start, event::Stop, event::Hurry, event::Prepare,
                            event::HandOver, event::Abandon, event::Restart, event::SettingsChanged,
                            event::Inherited, event::Adopted, event::StoodStill, event::SaidReady,
-                           event::Ended, event::NotStarted, event::SpareSpoke, event::SpareEnded,
-                           event::SpareNotStarted, event::Tick>;
+                           event::Ended, event::NotStarted, event::StandbySpoke,
+                           event::StandbyEnded, event::StandbyNotStarted, event::Tick>;
 
 /// A change of a service that the rig must know. After `failed`, it is not restarted.
 enum class Notice { ready, stopped, failed };
@@ -108,9 +108,9 @@ namespace action {
 
 /// Start a worker.
 struct Spawn {};
-/// Make the spare the worker.
+/// Make the standby the worker.
 struct Promote {};
-/// Send SIGTERM to the worker and make the spare the worker. The old worker becomes the spare.
+/// Send SIGTERM to the worker and make the standby the worker. The old worker becomes the standby.
 struct HandOver {};
 /// Ask the worker to stop.
 struct AskToStop {
@@ -118,12 +118,12 @@ struct AskToStop {
 };
 /// Send SIGKILL to the worker.
 struct Kill {};
-/// Start a spare.
-struct SpawnSpare {};
-/// Send SIGTERM to the spare.
-struct AskSpareToStop {};
-/// Send SIGKILL to the spare.
-struct KillSpare {};
+/// Start a standby.
+struct SpawnStandby {};
+/// Send SIGTERM to the standby.
+struct AskStandbyToStop {};
+/// Send SIGKILL to the standby.
+struct KillStandby {};
 /// Report that the replacement cannot take over.
 struct ReplacementFailed {
   std::string why;         ///< "exit 100", or "was not prepared within 10 s"
@@ -146,17 +146,17 @@ struct Tell {
 /// Any action.
 using Action =
     std::variant<action::Spawn, action::Promote, action::HandOver, action::AskToStop, action::Kill,
-                 action::SpawnSpare, action::AskSpareToStop, action::KillSpare,
+                 action::SpawnStandby, action::AskStandbyToStop, action::KillStandby,
                  action::ReplacementFailed, action::ReadLastWords, action::Warn, action::Tell>;
 
 /// The settings of the rig file that next() needs about a service.
 struct Rules {
   std::string_view name;       ///< name of the service, for messages: "pose"
-  std::int64_t ready_ns = 0;   ///< time limit for a worker to be ready and a spare to be prepared
+  std::int64_t ready_ns = 0;   ///< time limit for a worker to be ready and a standby to be prepared
   std::int64_t stop_ns = 0;    ///< time limit for a process to stop; then it is killed
   std::int64_t silent_ns = 0;  ///< longest time without a heartbeat: see the watchdog below
   bool publishes = false;      ///< it has a stream: it is not ready before its first message
-  bool wants_standby = false;  ///< a spare is kept
+  bool wants_standby = false;  ///< a standby is kept
 };
 
 // The watchdog: a worker that has been silent for silent_ns is killed whatever it does, because it

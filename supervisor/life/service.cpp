@@ -72,8 +72,8 @@ Service::MaybeEvent Service::carry_out(const action::Spawn&) {
 
 Service::MaybeEvent Service::carry_out(const action::Promote&) {
   epoch_before_ = stream_ ? stream_->epoch() : 0;
-  watch_worker(spare_->promote());
-  spare_.reset();
+  watch_worker(standby_->promote());
+  standby_.reset();
   take_wanted();
   return {};
 }
@@ -81,10 +81,10 @@ Service::MaybeEvent Service::carry_out(const action::Promote&) {
 Service::MaybeEvent Service::carry_out(const action::HandOver&) {
   epoch_before_ = stream_ ? stream_->epoch() : 0;  // before the new process may publish
   worker_->signal(SIGTERM);
-  auto next = spare_->promote();
+  auto next = standby_->promote();
   auto before = worker_->release();
   watch_worker(std::move(next));
-  watch_spare(std::move(before), spare_log_);  // its last words are not those of the new one
+  watch_standby(std::move(before), standby_log_);  // its last words are not those of the new one
   take_wanted();
   return {};
 }
@@ -106,26 +106,26 @@ Service::MaybeEvent Service::carry_out(const action::Kill&) {
   return {};
 }
 
-Service::MaybeEvent Service::carry_out(const action::SpawnSpare&) {
-  spare_log_ = {};
+Service::MaybeEvent Service::carry_out(const action::SpawnStandby&) {
+  standby_log_ = {};
   auto child = spawn(true);
-  if (!child) return event::SpareNotStarted{child.error().what};
-  watch_spare(std::move(*child), spare_log_);
+  if (!child) return event::StandbyNotStarted{child.error().what};
+  watch_standby(std::move(*child), standby_log_);
   return {};
 }
 
-Service::MaybeEvent Service::carry_out(const action::AskSpareToStop&) {
-  spare_->signal(SIGTERM);
+Service::MaybeEvent Service::carry_out(const action::AskStandbyToStop&) {
+  standby_->signal(SIGTERM);
   return {};
 }
 
-Service::MaybeEvent Service::carry_out(const action::KillSpare&) {
-  spare_->signal(SIGKILL);
+Service::MaybeEvent Service::carry_out(const action::KillStandby&) {
+  standby_->signal(SIGKILL);
   return {};
 }
 
 Service::MaybeEvent Service::carry_out(const action::ReplacementFailed& failed) {
-  const auto last = failed.by_itself ? spare_log_.last_sentence() : "";
+  const auto last = failed.by_itself ? standby_log_.last_sentence() : "";
   replacement_problem_ = last.empty() ? failed.why : last;
   return {};
 }
@@ -145,8 +145,8 @@ Service::MaybeEvent Service::carry_out(const action::Tell& tell) {
   return {};
 }
 
-Result<Child> Service::spawn(bool spare) const {
-  const auto with = spare && wanted_ ? *wanted_ : settings();
+Result<Child> Service::spawn(bool standby) const {
+  const auto with = standby && wanted_ ? *wanted_ : settings();
   const auto command = command_of(spec_, launch_.program_folder);
   std::vector<std::string> arguments(command.begin() + 1, command.end());
   arguments.insert(arguments.end(), {"--config", fmt::format("/proc/self/fd/{}", with.rig_fd)});
@@ -159,7 +159,7 @@ Result<Child> Service::spawn(bool spare) const {
                        .rig = launch_.rig,
                        .state_fd = launch_.state_fd,
                        .rig_fd = with.rig_fd,
-                       .spare = spare});
+                       .standby = standby});
 }
 
 void Service::watch_worker(Child child) {
@@ -172,11 +172,11 @@ void Service::watch_worker(Child child) {
                              .on_end = [this](Exit exit) { worker_ended(exit); }});
 }
 
-void Service::watch_spare(Child child, LogTail& log) {
-  spare_ = std::make_unique<WatchedChild>(
+void Service::watch_standby(Child child, LogTail& log) {
+  standby_ = std::make_unique<WatchedChild>(
       std::move(child), log, loop_,
-      WatchedChild::Listener{.on_words = [this](daemon::Words) { handle(event::SpareSpoke{}); },
-                             .on_end = [this](Exit exit) { spare_ended(exit); }});
+      WatchedChild::Listener{.on_words = [this](daemon::Words) { handle(event::StandbySpoke{}); },
+                             .on_end = [this](Exit exit) { standby_ended(exit); }});
 }
 
 void Service::worker_ended(Exit exit) {
@@ -185,10 +185,10 @@ void Service::worker_ended(Exit exit) {
   dead_.reset();
 }
 
-void Service::spare_ended(Exit exit) {
-  spare_->read_last_words();
-  spare_.reset();
-  handle(event::SpareEnded{exit});
+void Service::standby_ended(Exit exit) {
+  standby_->read_last_words();
+  standby_.reset();
+  handle(event::StandbyEnded{exit});
 }
 
 bool Service::has_published() const { return stream_ && stream_->epoch() != epoch_before_; }
@@ -212,7 +212,7 @@ void Service::prepare(Settings wanted, Replacement how, bool may_use_standby) {
 }
 
 bool Service::replacement_is_prepared() const {
-  return state_.replacement && std::holds_alternative<spare::Prepared>(state_.spare);
+  return state_.replacement && std::holds_alternative<standby::Prepared>(state_.standby);
 }
 
 std::optional<double> Service::pause_ms() const {
@@ -240,7 +240,7 @@ void Service::update(ServiceSpec spec) {
 
 void Service::tick(std::int64_t now, const Look& look) {
   if (worker_) worker_->check_end();
-  if (spare_) spare_->check_end();
+  if (standby_) standby_->check_end();
   handle(event::Tick{.published = has_published(),
                      .needs_are_ready = look.needs_are_ready,
                      .last_sign_ns = look.last_sign_ns,
@@ -266,8 +266,8 @@ SavedService Service::saved() const {
           .restarts = restarts()};
 }
 
-pid_t Service::spare_pid() const {
-  return std::holds_alternative<spare::Prepared>(state_.spare) ? spare_->pid() : 0;
+pid_t Service::standby_pid() const {
+  return std::holds_alternative<standby::Prepared>(state_.standby) ? standby_->pid() : 0;
 }
 
 double Service::uptime_s(std::int64_t now) const {

@@ -46,7 +46,7 @@ struct Settings {
   int rig_fd = -1;        ///< the rig file, --config of the daemon
 };
 
-/// One service: its worker and its spare on the event loop, over all restarts. A service is ready
+/// One service: its worker and its standby on the event loop, over all restarts. A service is ready
 /// when its worker has reported so and, if it publishes a stream, has published its first message.
 ///
 /// This class makes no decisions: it passes events to next() (next.hpp) and carries out the
@@ -130,10 +130,10 @@ class Service {
   State state() const { return shown(state_.worker); }
   /// The pid of the worker; 0 if there is none.
   pid_t pid() const { return worker_ ? worker_->pid() : 0; }
-  /// The pid of a spare that can be promoted; 0 if there is none.
-  pid_t spare_pid() const;
-  /// True if there is a process, worker or spare.
-  bool is_running() const { return worker_ || spare_; }
+  /// The pid of a standby that can be promoted; 0 if there is none.
+  pid_t standby_pid() const;
+  /// True if there is a process, worker or standby.
+  bool is_running() const { return worker_ || standby_; }
   /// True between hold() and start().
   bool is_held() const { return std::holds_alternative<worker::Held>(state_.worker); }
   /// Time since the worker was started; 0 if there is none.
@@ -166,21 +166,21 @@ class Service {
   MaybeEvent carry_out(const action::HandOver&);
   MaybeEvent carry_out(const action::AskToStop& ask);
   MaybeEvent carry_out(const action::Kill&);
-  MaybeEvent carry_out(const action::SpawnSpare&);
-  MaybeEvent carry_out(const action::AskSpareToStop&);
-  MaybeEvent carry_out(const action::KillSpare&);
+  MaybeEvent carry_out(const action::SpawnStandby&);
+  MaybeEvent carry_out(const action::AskStandbyToStop&);
+  MaybeEvent carry_out(const action::KillStandby&);
   MaybeEvent carry_out(const action::ReplacementFailed& failed);
   MaybeEvent carry_out(const action::ReadLastWords&);
   MaybeEvent carry_out(const action::Warn& warn);
   MaybeEvent carry_out(const action::Tell& tell);
 
-  Result<Child> spawn(bool spare) const;
+  Result<Child> spawn(bool standby) const;
   void watch_worker(Child child);
-  void watch_spare(Child child, LogTail& log);
+  void watch_standby(Child child, LogTail& log);
   void take_wanted();
   Activity observe(std::int64_t now_ns, const Look& look);
   void worker_ended(Exit exit);
-  void spare_ended(Exit exit);
+  void standby_ended(Exit exit);
   bool has_published() const;
 
   ServiceSpec spec_;
@@ -195,8 +195,8 @@ class Service {
   std::string replacement_problem_;
   std::optional<ProcessLook> look_;  ///< the last look at a silent worker
 
-  LogTail log_, spare_log_;
-  std::unique_ptr<WatchedChild> worker_, spare_;
+  LogTail log_, standby_log_;
+  std::unique_ptr<WatchedChild> worker_, standby_;
   std::unique_ptr<WatchedChild> dead_;   ///< a worker that has ended, until its output is read
   std::optional<ipc::RingView> stream_;  ///< the ring that it publishes
   std::uint64_t epoch_before_ = 0;       ///< epoch of the ring before this worker could publish

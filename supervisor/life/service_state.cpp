@@ -16,7 +16,7 @@ struct Shown {
   State operator()(const worker::Ready&) const { return State::ready; }
   State operator()(const worker::Killed&) const { return State::starting; }
   State operator()(const worker::Stopping&) const { return State::stopping; }
-  State operator()(const worker::AwaitingSpare&) const { return State::stopping; }
+  State operator()(const worker::AwaitingStandby&) const { return State::stopping; }
 };
 
 }  // namespace
@@ -34,8 +34,9 @@ const Life* life_of(const Worker& worker) {
       worker);
 }
 
-bool is_running(const Spare& spare) {
-  return !std::holds_alternative<spare::None>(spare) && !std::holds_alternative<spare::Due>(spare);
+bool is_running(const Standby& standby) {
+  return !std::holds_alternative<standby::None>(standby) &&
+         !std::holds_alternative<standby::Due>(standby);
 }
 
 }  // namespace handcast::supervisor

@@ -12,8 +12,8 @@
 
 namespace handcast::supervisor {
 
-/// How a process became the worker: it was started, it was the spare, or an earlier supervisor had
-/// started it.
+/// How a process became the worker: it was started, it was the standby, or an earlier supervisor
+/// had started it.
 enum class Origin { spawned, promoted, adopted };
 
 /// The constant properties of a worker's process.
@@ -69,20 +69,20 @@ struct Stopping {
   std::optional<std::int64_t> kill_ns{};  ///< when it is killed; empty: it has been
   Then then = Then::stay;                 ///< what follows
 };
-/// The process has stopped on request; its spare has not ended yet.
-struct AwaitingSpare {};
+/// The process has stopped on request; its standby has not ended yet.
+struct AwaitingStandby {};
 
 }  // namespace worker
 
 /// The state of the worker.
 using Worker = std::variant<worker::Stopped, worker::Failed, worker::Held, worker::Waiting,
                             worker::Starting, worker::AwaitingMessage, worker::Ready,
-                            worker::Killed, worker::Stopping, worker::AwaitingSpare>;
+                            worker::Killed, worker::Stopping, worker::AwaitingStandby>;
 
-/// The states of the spare, a second process that has prepared itself and waits for its turn: a
-/// standby, or a replacement. A worker that was replaced while it worked becomes the spare until it
-/// has ended. Deaths of spares do not count as deaths of the service.
-namespace spare {
+/// The states of the standby, a second process that has prepared itself and waits for its turn: a
+/// standby, or a replacement. A worker that was replaced while it worked becomes the standby until
+/// it has ended. Deaths of standbys do not count as deaths of the service.
+namespace standby {
 
 /// No process, and none is wanted.
 struct None {};
@@ -110,17 +110,17 @@ struct Leaving {
   std::optional<std::int64_t> start_ns{};  ///< when to start the next one; empty: none is wanted
 };
 
-}  // namespace spare
+}  // namespace standby
 
-/// The state of the spare.
-using Spare = std::variant<spare::None, spare::Due, spare::Preparing, spare::Prepared,
-                           spare::Killed, spare::Leaving>;
+/// The state of the standby.
+using Standby = std::variant<standby::None, standby::Due, standby::Preparing, standby::Prepared,
+                             standby::Killed, standby::Leaving>;
 
 /// The history of a service, over all its processes.
 struct Past {
-  /// The deaths of its workers and of its spares.
+  /// The deaths of its workers and of its standbys.
   /// @{
-  DeathRecord deaths, spare_deaths;
+  DeathRecord deaths, standby_deaths;
   /// @}
   std::optional<Exit> last_exit{};               ///< how the last worker ended
   std::optional<std::int64_t> first_start_ns{};  ///< when it was first started; empty: never
@@ -128,7 +128,7 @@ struct Past {
   bool was_ready = false;                        ///< a worker has been ready
 };
 
-/// A spare that takes over from a worker that works: for new settings, or because a person asked
+/// A standby that takes over from a worker that works: for new settings, or because a person asked
 /// for a restart.
 struct Replacement {
   bool on_trial = false;  ///< see Life
@@ -138,16 +138,17 @@ struct Replacement {
 
 /// The state of one service. next() computes the next one (next.hpp).
 struct ServiceState {
-  Worker worker;                             ///< the process that does the work
-  Spare spare;                               ///< the process that can replace it
-  std::optional<Replacement> replacement{};  ///< set while the spare is a replacement, or is to be
-  Past past;                                 ///< their history
+  Worker worker;    ///< the process that does the work
+  Standby standby;  ///< the process that can replace it
+  std::optional<Replacement>
+      replacement{};  ///< set while the standby is a replacement, or is to be
+  Past past;          ///< their history
 };
 
 /// The worker's process; null if it has none.
 const Life* life_of(const Worker& worker);
-/// True if the spare has a process.
-bool is_running(const Spare& spare);
+/// True if the standby has a process.
+bool is_running(const Standby& standby);
 /// The state as `handcast status` shows it.
 State shown(const Worker& worker);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Only for next.cpp and next_spare.cpp.
+// Only for next.cpp and next_standby.cpp.
 #pragma once
 #include <utility>
 
@@ -14,14 +14,14 @@ class Transition {
   /// Stores the arguments of next(). `rules` must outlive the object.
   Transition(ServiceState state, std::int64_t now_ns, const Rules& rules)
       : worker_(state.worker),
-        spare_(std::move(state.spare)),
+        standby_(std::move(state.standby)),
         replacement_(state.replacement),
         past_(std::move(state.past)),
         now_(now_ns),
         rules_(rules) {}
   /// The result.
   Step take() && {
-    return {{worker_, std::move(spare_), replacement_, std::move(past_)}, std::move(actions_)};
+    return {{worker_, std::move(standby_), replacement_, std::move(past_)}, std::move(actions_)};
   }
 
   /// Handles an event.
@@ -41,9 +41,9 @@ class Transition {
   void operator()(const event::SaidReady&);
   void operator()(const event::Ended&);
   void operator()(const event::NotStarted&);
-  void operator()(const event::SpareSpoke&);
-  void operator()(const event::SpareEnded&);
-  void operator()(const event::SpareNotStarted&);
+  void operator()(const event::StandbySpoke&);
+  void operator()(const event::StandbyEnded&);
+  void operator()(const event::StandbyNotStarted&);
   void operator()(const event::Tick&);
   /// @}
 
@@ -68,20 +68,20 @@ class Transition {
   void tick(const worker::Stopping& stopping, const event::Tick& event);
   void tick(const auto& /*other*/, const event::Tick&) {}  // these states have no time limit
 
-  // The spare (next_spare.cpp).
-  bool spare_is_prepared() const { return std::holds_alternative<spare::Prepared>(spare_); }
-  bool standby_is_prepared() const { return spare_is_prepared() && !replacement_; }
+  // The standby (next_standby.cpp).
+  bool standby_is_prepared() const { return std::holds_alternative<standby::Prepared>(standby_); }
+  bool can_fail_over() const { return standby_is_prepared() && !replacement_; }
   void promote(bool on_trial);
   void lose_replacement(std::string why, bool by_itself);
-  void want_spare(const Life& life);
-  void dismiss_spare();
-  void tick_spare();
-  void kill_spare(const std::string& why);
-  void replace_spare(const Death& death);
-  void shift_spare(std::int64_t span_ns);
+  void want_standby(const Life& life);
+  void dismiss_standby();
+  void tick_standby();
+  void kill_standby(const std::string& why);
+  void replace_standby(const Death& death);
+  void shift_standby(std::int64_t span_ns);
 
   Worker worker_;
-  Spare spare_;
+  Standby standby_;
   std::optional<Replacement> replacement_;
   Past past_;
   std::int64_t now_;

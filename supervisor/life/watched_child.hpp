@@ -29,7 +29,7 @@ class WatchedChild {
   void signal(int number) { child_.signal(number); }
   /// Returns the child. Afterwards the object watches none.
   Child release();
-  /// Gives a spare its turn and returns it: see release().
+  /// Gives a standby its turn and returns it: see release().
   Child promote();
   /// Reports the end of an adopted process whose exit status arrived late.
   void check_end() {

@@ -19,7 +19,7 @@
 #include "supervisor/base/console.hpp"
 #include "supervisor/rig/safe_state.hpp"
 #include "supervisor/rig/takeover.hpp"
-#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 
 namespace handcast::supervisor {
 namespace {

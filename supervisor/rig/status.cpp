@@ -64,7 +64,7 @@ ServiceFigures figures_of(const Service& service, const RigView& rig) {
   figures.reason = reason_of(service);
   if (!is_well(service)) figures.log = service.log().last(kLastWords);
   figures.pid = service.pid();
-  figures.spare_pid = service.spare_pid();
+  figures.standby_pid = service.standby_pid();
   figures.restarts = service.restarts();
   figures.uptime_s = rounded(service.uptime_s(rig.now_ns));
   figures.retry_s = rounded(service.retry_s(rig.now_ns));

@@ -20,7 +20,7 @@ struct ServiceSpec {
   std::string wanted_of{};  ///< the back end that wanted_hz applies to; "" for all
   /// Services that must be ready, or have given up, before this one is started the first time.
   std::vector<std::string> needs{};
-  config::Process process{};  ///< scheduling, memory and spare: [NAME.process]
+  config::Process process{};  ///< scheduling, memory and standby: [NAME.process]
   std::string fingerprint{};  ///< fingerprint of its settings: see fingerprint_of()
   /// The back end that takes the place of `backend` if a file of that is missing; "" for none.
   std::string fallback{};

@@ -6,7 +6,7 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/shm/segment.hpp"
-#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 #include "supervisor/succession/saved_rig.hpp"
 #include "supervisor/succession/state_memory.hpp"
 
@@ -30,9 +30,9 @@ struct AdoptedRig {
 /// Adopts the living services and the rings of the rig `name`; empty if there are none. The state
 /// is that of a living service (/proc/PID/fd/N), or it comes from systemd's store, as do the rings,
 /// whose inodes are compared; rows of dead readers are freed. All other processes of the rig's
-/// services are killed: those that were not ready, spares, and all of them if no state can be read.
-/// Errors: unavailable (the rings cannot be opened); the living services can only be stopped then
-/// (stop_rig()).
+/// services are killed: those that were not ready, standbys, and all of them if no state can be
+/// read. Errors: unavailable (the rings cannot be opened); the living services can only be stopped
+/// then (stop_rig()).
 Result<std::optional<AdoptedRig>> adopt(const std::string& name);
 
 /// The memory with the saved state that a service holds open. Errors: bad_data (it has none).

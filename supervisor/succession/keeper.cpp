@@ -25,7 +25,7 @@
 #include "supervisor/base/console.hpp"
 #include "supervisor/base/exit.hpp"
 #include "supervisor/life/keeper_link.hpp"
-#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 #include "supervisor/succession/supervisor_command.hpp"
 
 namespace handcast::supervisor {

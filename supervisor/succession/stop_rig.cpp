@@ -14,8 +14,8 @@
 #include "ipc/control/rig_address.hpp"
 #include "supervisor/base/pidfd.hpp"
 #include "supervisor/base/process.hpp"
-#include "supervisor/succession/census.hpp"
 #include "supervisor/succession/keeper.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 
 namespace handcast::supervisor {
 namespace {

@@ -36,8 +36,8 @@ class TwinRig : public RigProcess {
   /// `settings`: for --set.
   TwinRig(const RigFolder& folder, const std::vector<std::string>& settings);
 
-  /// Waits until all services are ready, and `standby`, if it is not empty, has a spare. Then lets
-  /// the rig work for a moment.
+  /// Waits until all services are ready, and `standby`, if it is not empty, has a standby. Then
+  /// lets the rig work for a moment.
   void settle(const std::string& standby) const;
 };
 

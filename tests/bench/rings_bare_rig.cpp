@@ -14,7 +14,7 @@ namespace handcast::bench {
 namespace {
 
 constexpr auto kRigName = "bare";
-constexpr int kPrepare_us = 100'000;  // what a bare spare needs to be prepared, and more
+constexpr int kPrepare_us = 100'000;  // what a bare standby needs to be prepared, and more
 
 std::vector<std::string> command_of(const std::filesystem::path& folder, bool standby) {
   std::vector<std::string> words{(folder / "handcast").string(), "up",

@@ -24,7 +24,7 @@ constexpr std::int64_t kLook_every_ns = 20'000;
 
 /// Each from the kill.
 struct Restarts {
-  std::vector<double> program_ms;  ///< to the successor's main; below 0 where that was a spare
+  std::vector<double> program_ms;  ///< to the successor's main; below 0 where that was a standby
   std::vector<double> seen_ms;     ///< to its first message
 };
 

@@ -167,7 +167,7 @@ TEST_F(Faults, AMachineThatStoodStillKillsNobody) {
   expect_restarts({});
 }
 
-TEST_F(Faults, ASpareProjectorTakesOverAndTheLightGoesOn) {
+TEST_F(Faults, AStandbyProjectorTakesOverAndTheLightGoesOn) {
   const auto rig = up({"--set", "projector.process.standby=true"});
   wait_until_light();
   ASSERT_TRUE(eventually([&] { return service("projector")["standby"].is_number(); }));
@@ -178,7 +178,7 @@ TEST_F(Faults, ASpareProjectorTakesOverAndTheLightGoesOn) {
   EXPECT_EQ(service("projector")["pid"], before["standby"]);
   expect_restarts({{"projector", 1}});
   EXPECT_TRUE(eventually([&] { return service("projector")["standby"].is_number(); }))
-      << "there is a new spare";
+      << "there is a new standby";
   const auto both = service("projector");
   rig->signal(SIGINT);
   EXPECT_EQ(rig->wait(), 0);

@@ -105,20 +105,20 @@ Result<Functions> load_functions(FindFunction find) {
 
 namespace {
 
-constexpr std::array kVersion{EGL_CONTEXT_MAJOR_VERSION,       4,
+constexpr std::array kContext{EGL_CONTEXT_MAJOR_VERSION,       4,
                               EGL_CONTEXT_MINOR_VERSION,       5,
                               EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
 
 /// A context that reports a reset of the GPU, or, if the driver has none, one that does not.
 EGLContext create_context(const Egl& egl, EGLDisplay display, EGLConfig config, EGLContext shared) {
-  std::array<EGLint, kVersion.size() + 3> attributes{};
-  std::copy(kVersion.begin(), kVersion.end(), attributes.begin());
-  attributes[kVersion.size()] = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
-  attributes[kVersion.size() + 1] = EGL_LOSE_CONTEXT_ON_RESET;
+  std::array<EGLint, kContext.size() + 3> attributes{};
+  std::copy(kContext.begin(), kContext.end(), attributes.begin());
+  attributes[kContext.size()] = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
+  attributes[kContext.size() + 1] = EGL_LOSE_CONTEXT_ON_RESET;
   attributes.back() = EGL_NONE;
   EGLContext context = egl.CreateContext(display, config, shared, attributes.data());
   if (context == EGL_NO_CONTEXT) {
-    attributes[kVersion.size()] = EGL_NONE;
+    attributes[kContext.size()] = EGL_NONE;
     context = egl.CreateContext(display, config, shared, attributes.data());
   }
   return context;

@@ -14,7 +14,7 @@
 #include "config/settings/settings.hpp"
 #include "ipc/base/input_file.hpp"
 #include "services/lab/simulate/frame_detector.hpp"
-#include "services/lab/twin/flesh_model.hpp"
+#include "services/lab/twin/ground_truth_mesh.hpp"
 
 namespace handcast::sweep {
 namespace {

@@ -176,7 +176,7 @@ int main(int argc, char** argv) try {
            "The file of handcast's network, if not the one that comes with handcast");
   line.add("--models DIR", options.folder, "The folder of MediaPipe's files");
   line.add("--motion DIR", motions, "A folder of a recording of a left hand, or builtin:NAME");
-  line.add("--mesh NAME", mesh, "The flesh that the renders show, as twin.shape.mesh");
+  line.add("--mesh NAME", mesh, "The ground-truth mesh that the renders show, as twin.shape.mesh");
   line.add("--picture FILE", pictures,
            "A picture NAME_camera.png of a left hand, with NAME_joints_2d_left.npy beside it");
   line.add("--drawings DIR", drawings, "A folder for drawings of the results on pictures");

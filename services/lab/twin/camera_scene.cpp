@@ -44,10 +44,10 @@ CameraScene::CameraScene(const config::TwinImage& settings, int seed,
     mirror_image_ = renderer::Image<float>(camera_.width_px, camera_.height_px);
 }
 
-void CameraScene::set_hand(Side side, const TrueHand& flesh) {
-  const renderer::HandMesh& mesh = flesh.mesh;
+void CameraScene::set_hand(Side side, const TrueHand& truth) {
+  const renderer::HandMesh& mesh = truth.mesh;
   auto& hand = hands_[static_cast<std::size_t>(side)];
-  hand = {&flesh,
+  hand = {&truth,
           make_forearm(mesh, static_cast<float>(settings_.sleeve_mm * 1e-3)),
           {},
           skin_pattern(mesh, settings_, Random(seed_, Stream::image_texture))};
@@ -122,15 +122,15 @@ renderer::Rect CameraScene::shoot_face(std::int64_t time_ns, glm::vec2 within_pi
 /// Appends a hand and its forearm. `joints`: camera space.
 void CameraScene::shoot_hand(const Hand& hand, const JointFrames& joints, glm::vec2 within_pixel,
                              std::size_t& count) {
-  positions_.resize(hand.flesh->mesh.vertex_count());
-  normals_.resize(hand.flesh->mesh.vertex_count());
-  pose(*hand.flesh, joints, positions_, normals_);
+  positions_.resize(hand.truth->mesh.vertex_count());
+  normals_.resize(hand.truth->mesh.vertex_count());
+  pose(*hand.truth, joints, positions_, normals_);
   Shot& skin = next_shot(count);
   shoot(skin, within_pixel);
   for (std::size_t v = 0; v < hand.pattern.size(); ++v) skin.grey[v] *= hand.pattern[v];
   if (faulty_ && !hand.holes.empty())
     for (std::size_t v = 0; v < skin.grey.size(); ++v) skin.grey[v] *= hand.holes[v];
-  skin.triangles = &hand.flesh->mesh.triangles;
+  skin.triangles = &hand.truth->mesh.triangles;
 
   const Forearm& arm = hand.forearm;
   positions_.resize(arm.positions.size());
@@ -150,7 +150,7 @@ renderer::Rect CameraScene::shoot_hands(std::int64_t time_ns, const TruthAt& tru
   const std::size_t first = count;
   for (const Side side : {Side::left, Side::right}) {
     const Hand& hand = hands_[static_cast<std::size_t>(side)];
-    auto joints = hand.flesh ? truth(side, time_ns) : std::nullopt;
+    auto joints = hand.truth ? truth(side, time_ns) : std::nullopt;
     if (!joints) continue;
     for (auto& frame : *joints) frame = camera_from_tracker_ * frame;
     shoot_hand(hand, *joints, within_pixel, count);
@@ -216,10 +216,10 @@ void CameraScene::expose(std::size_t shots, const renderer::Rect& region) {
 
 /// Draws the second person into the background. Four positions within a pixel antialias the edges.
 void CameraScene::add_bystander() {
-  const Hand& hand = hands_[0].flesh ? hands_[0] : hands_[1];
-  if (!hand.flesh || hand.flesh->mesh.positions.empty()) return;
+  const Hand& hand = hands_[0].truth ? hands_[0] : hands_[1];
+  if (!hand.truth || hand.truth->mesh.positions.empty()) return;
   const renderer::Rect all{0, 0, camera_.width_px, camera_.height_px};
-  const auto joints = bystander_joints(hand.flesh->mesh, camera_);
+  const auto joints = bystander_joints(hand.truth->mesh, camera_);
   renderer::Image<float> mean(camera_.width_px, camera_.height_px);
   constexpr int kPositions = 4;
   for (int i = 0; i < kPositions; ++i) {

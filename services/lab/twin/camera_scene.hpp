@@ -34,7 +34,7 @@ class CameraScene {
   CameraScene(const config::TwinImage& settings, int seed, const calib::PlacedCamera& camera);
 
   /// Sets one hand, which must outlive the scene. A hand that was not set is not drawn.
-  void set_hand(Side side, const TrueHand& flesh);
+  void set_hand(Side side, const TrueHand& truth);
 
   /// Draws frame `k`, exposed for `exposure_ns` around `origin_ns` (ns since the epoch). `image`
   /// must have the size of the camera's image.
@@ -43,7 +43,7 @@ class CameraScene {
 
  private:
   struct Hand {
-    const TrueHand* flesh = nullptr;
+    const TrueHand* truth = nullptr;
     Forearm forearm;
     std::vector<float> holes;    ///< brightness of each vertex; empty without holes
     std::vector<float> pattern;  ///< see skin_pattern()

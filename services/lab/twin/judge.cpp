@@ -219,7 +219,7 @@ class RigJudge final : public Judge {
   };
   TruePoint true_point(Surface surface, glm::ivec2 pixel) const {
     const SeenHand& hand = seen(hand_of(surface));
-    const auto& mesh = hand.flesh->mesh;
+    const auto& mesh = hand.truth->mesh;
     const auto& triangle = mesh.triangles[triangle_of(surface)];
     const glm::vec3 share = barycentrics(hand.screen, triangle, static_cast<float>(pixel.x),
                                          static_cast<float>(pixel.y));
@@ -254,7 +254,7 @@ class RigJudge final : public Judge {
     if (!shown || shown->side != hand.side) return score_missing(truth, pixel, score);
     const auto meant = texture_.at(hand.side, shown->uv);
     const glm::vec2 error = glm::vec2(pixel) - view_.to_projector(meant.seen_m);
-    // The flesh of a broken mesh has points that are nowhere.
+    // The ground truth of a broken mesh has points that are nowhere.
     if (!std::isfinite(error.x) || !std::isfinite(error.y))
       return score_missing(truth, pixel, score);
     score.interior_px.push_back(glm::length(error));
@@ -273,7 +273,7 @@ class RigJudge final : public Judge {
   int step_px_;
   TrueView view_;
   PlacedTexture texture_;
-  std::array<std::vector<int>, 2> fingers_;  ///< by side and vertex of the flesh
+  std::array<std::vector<int>, 2> fingers_;  ///< by side and vertex of the ground-truth mesh
   renderer::Image<std::uint8_t> alpha_;
 };
 

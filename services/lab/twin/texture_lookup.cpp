@@ -105,7 +105,7 @@ PlacedTexture::PlacedTexture(const Twin& twin)
 void PlacedTexture::place(const SeenHand& hand) {
   const auto& map = twin_.hands().texture(hand.side);
   auto& placed = placed_[static_cast<std::size_t>(hand.side)];
-  const auto& mesh = hand.flesh->mesh;
+  const auto& mesh = hand.truth->mesh;
   placed.seen_m.resize(map.size());
   placed.rest_m.resize(map.size());
   for (std::size_t v = 0; v < map.size(); ++v) {

@@ -37,7 +37,7 @@ class PlacedTexture {
   /// `twin` must outlive it.
   explicit PlacedTexture(const Twin& twin);
 
-  /// Places the texture of one hand on its flesh, as it is seen and at rest.
+  /// Places the texture of one hand on its ground-truth mesh, as it is seen and at rest.
   void place(const SeenHand& hand);
 
   /// A point of the texture, m.

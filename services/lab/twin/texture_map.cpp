@@ -30,7 +30,7 @@ glm::vec3 nearest_in(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b,
   return {va / whole, vb / whole, vc / whole};
 }
 
-/// A triangle of the flesh, prepared for searches: it lies in a sphere.
+/// A triangle of the ground-truth mesh, prepared for searches: it lies in a sphere.
 struct Facet {
   glm::vec3 middle;
   float radius;
@@ -67,11 +67,11 @@ SurfacePoint nearest_point(const HandMesh& mesh, const std::vector<Facet>& facet
 
 }  // namespace
 
-std::vector<SurfacePoint> texture_map(const HandMesh& drawn, const HandMesh& flesh) {
-  const auto facets = facets_of(flesh);
+std::vector<SurfacePoint> texture_map(const HandMesh& drawn, const HandMesh& truth) {
+  const auto facets = facets_of(truth);
   std::vector<SurfacePoint> map;
   for (const glm::vec3& position : drawn.positions)
-    map.push_back(nearest_point(flesh, facets, position));
+    map.push_back(nearest_point(truth, facets, position));
   return map;
 }
 

@@ -22,10 +22,10 @@ struct SurfacePoint {
 };
 
 /// Where each vertex of the drawn mesh is on another surface of the same hand, by vertex: the place
-/// that the texture means, which is the nearest point of the flesh. Both must be at rest in the
-/// same pose (`rest` equal up to rounding).
+/// that the texture means, which is the nearest point of the ground-truth mesh. Both must be at
+/// rest in the same pose (`rest` equal up to rounding).
 std::vector<SurfacePoint> texture_map(const renderer::HandMesh& drawn,
-                                      const renderer::HandMesh& flesh);
+                                      const renderer::HandMesh& truth);
 
 /// The map of a mesh onto itself.
 std::vector<SurfacePoint> own_texture_map(const renderer::HandMesh& mesh);

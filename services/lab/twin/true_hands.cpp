@@ -7,7 +7,7 @@
 
 #include "ipc/base/log.hpp"
 #include "services/lab/twin/finger_pose.hpp"
-#include "services/lab/twin/flesh_model.hpp"
+#include "services/lab/twin/ground_truth_mesh.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -32,7 +32,7 @@ class PersonsHands final : public TrueHands {
  public:
   struct Model {
     HandMesh drawn;
-    FleshModel flesh;
+    GroundTruthMesh truth;
     bool made_by_handcast = false;  ///< the drawn mesh: it can be made again for a person
     bool seen = false;
   };
@@ -59,7 +59,7 @@ class PersonsHands final : public TrueHands {
   }
 
   std::string mesh_name() const override {
-    if (!models_[0].flesh.is_drawn_mesh) return settings_.mesh;
+    if (!models_[0].truth.is_drawn_mesh) return settings_.mesh;
     return settings_.mesh == "handcast"
                ? settings_.mesh
                : fmt::format("handcast, because {} is not installed", settings_.mesh);
@@ -79,21 +79,21 @@ class PersonsHands final : public TrueHands {
     const Model& model = models_[index(side)];
     if (!model.seen) return {model.drawn, settings_.skinning, {}, {}};
     const JointFrames rest = rest_pose(side, person_);
-    const bool refits = model.flesh.is_drawn_mesh && model.made_by_handcast;
+    const bool refits = model.truth.is_drawn_mesh && model.made_by_handcast;
     if (refits)
       return flesh_on_bones(renderer::refit_hand(model.drawn, person_), rest, 1, flesh_,
                             settings_.skinning);
-    return flesh_on_bones(model.flesh.mesh, rest, size_of(person_, model.flesh.mesh), flesh_,
+    return flesh_on_bones(model.truth.mesh, rest, size_of(person_, model.truth.mesh), flesh_,
                           settings_.skinning);
   }
 
   /// Made on the drawn mesh's own bones, where the two surfaces are most alike. It holds for every
   /// person, because only the places of the vertices differ.
   std::vector<SurfacePoint> map(Side side) const {
-    const auto& [drawn, flesh, made_by_handcast, seen] = models_[index(side)];
-    if (flesh.is_drawn_mesh) return own_texture_map(drawn);
-    const float size = breadth_m(drawn.rest) / breadth_m(flesh.mesh.rest);
-    const TrueHand same = flesh_on_bones(flesh.mesh, drawn.rest, size, Flesh::of_model(),
+    const auto& [drawn, truth, made_by_handcast, seen] = models_[index(side)];
+    if (truth.is_drawn_mesh) return own_texture_map(drawn);
+    const float size = breadth_m(drawn.rest) / breadth_m(truth.mesh.rest);
+    const TrueHand same = flesh_on_bones(truth.mesh, drawn.rest, size, Flesh::of_model(),
                                          config::TwinSkinning::linear);
     return texture_map(drawn, same.mesh);
   }
@@ -117,12 +117,12 @@ Result<std::unique_ptr<TrueHands>> TrueHands::create(const config::Rig& rig,
     const std::filesystem::path file = side == Side::left ? rig.hand.left : rig.hand.right;
     auto drawn = renderer::load_hand_or_default(file, side);
     if (!drawn) return tl::make_unexpected(drawn.error());
-    auto flesh = load_flesh_model(rig.twin.shape.mesh, *drawn);
-    if (!flesh) return tl::make_unexpected(flesh.error());
+    auto truth = load_ground_truth_mesh(rig.twin.shape.mesh, *drawn);
+    if (!truth) return tl::make_unexpected(truth.error());
     const auto s = static_cast<std::size_t>(side);
-    models[s] = {std::move(*drawn), std::move(*flesh), file.empty(), seen[s]};
+    models[s] = {std::move(*drawn), std::move(*truth), file.empty(), seen[s]};
   }
-  if (models[0].flesh.is_drawn_mesh && rig.twin.shape.mesh != "handcast")
+  if (models[0].truth.is_drawn_mesh && rig.twin.shape.mesh != "handcast")
     log::warning(
         "twin.shape.mesh: the hand '{}' is not installed; the true hand has the mesh that is "
         "drawn, "

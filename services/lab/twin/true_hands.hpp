@@ -52,8 +52,8 @@ struct Flesh {
 TrueHand flesh_on_bones(const renderer::HandMesh& model, const JointFrames& rest, float size,
                         const Flesh& flesh, config::TwinSkinning skinning);
 
-/// The positions of the flesh in the space of `joints`, m, by vertex of the mesh; unit normals if
-/// `normals` is not empty. The joints may be anywhere, with axes of unit length.
+/// The positions of the ground-truth mesh in the space of `joints`, m, by vertex of the mesh; unit
+/// normals if `normals` is not empty. The joints may be anywhere, with axes of unit length.
 void pose(const TrueHand& hand, const JointFrames& joints, std::span<glm::vec3> positions,
           std::span<glm::vec3> normals = {});
 
@@ -63,19 +63,19 @@ using msg::Side;
 /// use: the camera and the judge need them, the tracker and the detector do not. Any thread.
 class TrueHands {
  public:
-  /// Loads the models. `seen`: the sides that the motion has. Errors: those of load_flesh_model()
-  /// and of loading the drawn hands (bad_config).
+  /// Loads the models. `seen`: the sides that the motion has. Errors: those of
+  /// load_ground_truth_mesh() and of loading the drawn hands (bad_config).
   static Result<std::unique_ptr<TrueHands>> create(const config::Rig& rig, std::array<bool, 2> seen,
                                                    const renderer::HandShape& person);
   virtual ~TrueHands() = default;
 
-  /// The flesh of one hand.
+  /// The ground-truth mesh of one hand.
   virtual const TrueHand& of(Side side) const = 0;
   /// The mesh that the cascade draws, as it is loaded.
   virtual const renderer::HandMesh& drawn(Side side) const = 0;
-  /// Where each vertex of the drawn mesh is on the flesh.
+  /// Where each vertex of the drawn mesh is on the ground-truth mesh.
   virtual const std::vector<SurfacePoint>& texture(Side side) const = 0;
-  /// The mesh of the flesh for reports: as `twin.shape.mesh`, or what took its place and why.
+  /// The ground-truth mesh for reports: as `twin.shape.mesh`, or what took its place and why.
   virtual std::string mesh_name() const = 0;
 };
 

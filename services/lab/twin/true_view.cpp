@@ -58,9 +58,9 @@ void TrueView::project(std::span<const glm::vec3> positions, ScreenVertices& scr
 void TrueView::pose_hand(SeenHand& hand, Side side, std::int64_t time_ns,
                          const JointFrames& joints) {
   hand.side = side;
-  hand.flesh = &twin_.true_hand(side);
-  hand.position_m.resize(hand.flesh->mesh.vertex_count());
-  twin::pose(*hand.flesh, joints, hand.position_m);
+  hand.truth = &twin_.true_hand(side);
+  hand.position_m.resize(hand.truth->mesh.vertex_count());
+  twin::pose(*hand.truth, joints, hand.position_m);
   project(hand.position_m, hand.screen);
   find_velocities(hand, time_ns, joints);
   for (int j = 0; j < msg::kJoints; ++j) hand.joints_px[j] = to_projector(glm::vec3(joints[j][3]));
@@ -73,9 +73,9 @@ void TrueView::find_velocities(SeenHand& hand, std::int64_t time_ns, const Joint
   const std::size_t count = hand.position_m.size();
   before_.resize(count);
   after_.resize(count);
-  twin::pose(*hand.flesh, joints_in_camera(hand.side, time_ns - kVelocityStep_ns).value_or(joints),
+  twin::pose(*hand.truth, joints_in_camera(hand.side, time_ns - kVelocityStep_ns).value_or(joints),
              before_);
-  twin::pose(*hand.flesh, joints_in_camera(hand.side, time_ns + kVelocityStep_ns).value_or(joints),
+  twin::pose(*hand.truth, joints_in_camera(hand.side, time_ns + kVelocityStep_ns).value_or(joints),
              after_);
   hand.velocity_m_s.resize(count);
   hand.velocity_px_s.resize(count);
@@ -104,7 +104,7 @@ void TrueView::draw(const Rect& area) {
 void TrueView::draw_hand(std::size_t index, const Rect& area) {
   const SeenHand& hand = seen_[index];
   const auto& behind = behind_wrist_m_[static_cast<std::size_t>(hand.side)];
-  const auto& triangles = hand.flesh->mesh.triangles;
+  const auto& triangles = hand.truth->mesh.triangles;
   const auto out = surface_.view();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const auto& [i, j, k] = triangles[t];

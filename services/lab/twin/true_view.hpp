@@ -28,7 +28,7 @@ constexpr std::size_t triangle_of(Surface surface) { return (surface - kFirstTri
 /// A true hand as the projector's light meets it.
 struct SeenHand {
   Side side = Side::left;
-  const TrueHand* flesh = nullptr;
+  const TrueHand* truth = nullptr;
   std::vector<glm::vec3> position_m;  ///< by vertex, camera space
   ScreenVertices screen;              ///< by vertex, projector px
   /// By vertex.

@@ -40,7 +40,7 @@ class Twin {
   virtual std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const = 0;
   /// The true hands and what their texture means. The first use takes up to a second.
   virtual const TrueHands& hands() const = 0;
-  /// The flesh of one true hand: hands().of(). Valid as long as the twin.
+  /// The ground-truth mesh of one hand: hands().of(). Valid as long as the twin.
   const TrueHand& true_hand(Side side) const { return hands().of(side); }
   /// The rig as it is; the calibration is what it believes.
   virtual const TrueGeometry& geometry() const = 0;

@@ -16,7 +16,7 @@ template <class Visitor>
 void describe(Visitor& visit, ServiceFigures& service) {
   visit("state", service.state);
   visit("pid", service.pid);
-  visit.or_null("standby", service.spare_pid);
+  visit.or_null("standby", service.standby_pid);
   visit("backend", service.backend);
   visit.or_null("instead_of", service.instead_of);
   visit("uptime_s", service.uptime_s);

@@ -19,9 +19,9 @@ struct ServiceFigures {
   std::string last_exit;         ///< how the last process ended; "" if none has
   std::string reason;            ///< why the service is not well; "" if it is, or nobody knows
   std::vector<std::string> log;  ///< its last lines if it is not well
-  /// Pids of the service and of its spare; 0: none.
+  /// Pids of the service and of its standby; 0: none.
   /// @{
-  pid_t pid = 0, spare_pid = 0;
+  pid_t pid = 0, standby_pid = 0;
   /// @}
   int restarts = 0;                 ///< number of restarts
   double uptime_s = 0;              ///< time since its process was started

@@ -14,10 +14,14 @@ json or_null(const std::optional<Number>& value) {
 }
 
 json json_of(const ServiceRow& service) {
-  json object{{"service", service.name},        {"state", service.state},
-              {"backend", service.backend},     {"pid", service.pid},
-              {"spare_pid", service.spare_pid}, {"restarts", service.restarts},
-              {"uptime_s", service.uptime_s},   {"last_exit", service.last_exit},
+  json object{{"service", service.name},
+              {"state", service.state},
+              {"backend", service.backend},
+              {"pid", service.pid},
+              {"standby_pid", service.standby_pid},
+              {"restarts", service.restarts},
+              {"uptime_s", service.uptime_s},
+              {"last_exit", service.last_exit},
               {"cores", or_null(service.cores)}};
   if (!service.well()) object["trouble"] = service.trouble;
   if (!service.usage) return object;

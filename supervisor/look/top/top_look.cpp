@@ -23,7 +23,7 @@ std::set<pid_t> pids_of(const RigLook& look) {
   std::set<pid_t> pids;
   if (look.figures)
     for (const auto& [name, service] : look.figures->services)
-      pids.insert({service.pid, service.spare_pid});
+      pids.insert({service.pid, service.standby_pid});
   for (const auto& ring : look.rings)
     for (const auto& reader : ring.readers) pids.insert(reader.pid);
   return pids;

@@ -22,7 +22,7 @@ struct RigLook {
   /// The figures of the supervisor; the last ones if it does not answer, empty if it never has.
   std::optional<Figures> figures;
   std::vector<ipc::RingSnapshot> rings;     ///< the rings of the rig
-  std::map<pid_t, ProcessUsage> processes;  ///< living services, spares and readers
+  std::map<pid_t, ProcessUsage> processes;  ///< living services, standbys and readers
 };
 
 /// Observes a rig repeatedly. Rings and services are observed even while the supervisor is dead.

@@ -57,7 +57,7 @@ class Names {
     if (!look.figures) return;
     for (const auto& [name, service] : look.figures->services) {
       services_[service.pid] = name;
-      services_[service.spare_pid] = name + " (spare)";
+      services_[service.standby_pid] = name + " (standby)";
     }
   }
   std::string of(pid_t pid) const {

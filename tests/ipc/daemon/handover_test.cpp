@@ -25,7 +25,7 @@ TEST(Handover, ADaemonReadsWhatItsSupervisorWrote) {
   EXPECT_EQ(read.epoch_ns, 123456789012345);
 }
 
-TEST(Handover, ADaemonThatIsNoSpareIsNotToldOfAStandbyDescriptor) {
+TEST(Handover, ADaemonThatIsNoStandbyIsNotToldOfAStandbyDescriptor) {
   const DaemonEnvironment environment({.ready_fd = 7, .epoch_ns = 1});
   EXPECT_EQ(getenv("HANDCAST_STANDBY_FD"), nullptr);
   EXPECT_EQ(from_environment().standby_fd, -1);

@@ -46,45 +46,45 @@ TEST(Supervision, ReadyIsSaidOnceAndThenTheDescriptorIsClosed) {
   EXPECT_TRUE(read_words(ready.read.get()).closed);
 }
 
-TEST(Supervision, ASpareIsPreparedLongBeforeItIsReady) {
+TEST(Supervision, AStandbyIsPreparedLongBeforeItIsReady) {
   Pipe ready, turn;
-  auto spare =
+  auto standby =
       supervision_of({.ready_fd = ready.write.release(), .standby_fd = turn.read.release()});
-  EXPECT_TRUE(spare.is_spare());
-  std::thread waits([&] { spare.await_turn(); });
+  EXPECT_TRUE(standby.is_standby());
+  std::thread waits([&] { standby.await_turn(); });
   const auto prepared = read_words(ready.read.get());
   EXPECT_TRUE(prepared.any);
   EXPECT_FALSE(prepared.ready);
   EXPECT_TRUE(give_turn(turn.write.get()));
   waits.join();
-  EXPECT_FALSE(spare.is_spare());
-  spare.tell_ready();
+  EXPECT_FALSE(standby.is_standby());
+  standby.tell_ready();
   while (!read_words(ready.read.get()).ready) {
   }
 }
 
-TEST(Supervision, ASpareEndsWithZeroWhenItsSupervisorIsGone) {
+TEST(Supervision, AStandbyEndsWithZeroWhenItsSupervisorIsGone) {
   Pipe turn;
   turn.write.reset();
-  auto spare = supervision_of({.standby_fd = turn.read.release()});
-  EXPECT_EXIT(spare.await_turn(), ExitedWithCode(0), "");
+  auto standby = supervision_of({.standby_fd = turn.read.release()});
+  EXPECT_EXIT(standby.await_turn(), ExitedWithCode(0), "");
 }
 
-TEST(Supervision, ASpareThatIsToldToStopEndsWithZero) {
+TEST(Supervision, AStandbyThatIsToldToStopEndsWithZero) {
   Pipe turn;
-  auto spare = supervision_of({.standby_fd = turn.read.release()});
+  auto standby = supervision_of({.standby_fd = turn.read.release()});
   EXPECT_EXIT(
       {
         install_stop_signals();
         raise(SIGTERM);
-        spare.await_turn();
+        standby.await_turn();
       },
       ExitedWithCode(0), "");
 }
 
-TEST(Supervision, ADaemonThatIsNoSpareWaitsForNoTurn) {
+TEST(Supervision, ADaemonThatIsNoStandbyWaitsForNoTurn) {
   auto daemon = supervision_of({});
-  EXPECT_FALSE(daemon.is_spare());
+  EXPECT_FALSE(daemon.is_standby());
   daemon.await_turn();
 }
 

@@ -309,14 +309,14 @@ TEST(MaskFinder, ASmallDarkSpotOnTheHandIsHandAndALargeOneIsNot) {
 }
 
 /// The flesh of the hand of a Scene: fingers and palm.
-std::vector<Flesh> flesh_of_hand(glm::vec2 wrist) {
-  std::vector<Flesh> flesh;
+std::vector<Capsule> capsules_of_hand(glm::vec2 wrist) {
+  std::vector<Capsule> capsules;
   for (int finger = 0; finger < 4; ++finger) {
     const glm::vec2 knuckle = wrist + glm::vec2(-30 + 20 * finger, -75);
-    flesh.push_back({knuckle, knuckle - glm::vec2(0, 70), 8, 8});
+    capsules.push_back({knuckle, knuckle - glm::vec2(0, 70), 8, 8});
   }
-  flesh.push_back({wrist, wrist - glm::vec2(0, 50), 30, 36});
-  return flesh;
+  capsules.push_back({wrist, wrist - glm::vec2(0, 50), 30, 36});
+  return capsules;
 }
 
 TEST(MaskFinder, ABrightThingBehindTheHandIsNotHand) {
@@ -326,8 +326,8 @@ TEST(MaskFinder, ABrightThingBehindTheHandIsNotHand) {
   scene.find(finder);
   const int clean = scene.area();
   scene.capsule({300, 220}, {420, 220}, 60, 120);
-  const auto flesh = flesh_of_hand({360, 400});
-  scene.hints[0].flesh = flesh;
+  const auto capsules = capsules_of_hand({360, 400});
+  scene.hints[0].capsules = capsules;
   scene.hints[0].sure_px = 1;
   scene.hints[0].most_px = 14;
   scene.find(finder);
@@ -343,8 +343,8 @@ TEST(MaskFinder, AHandThatIsSomewhatOffItsBonesIsWhollyFound) {
   MaskFinder finder({});
   scene.find(finder);
   const int clean = scene.area();
-  const auto flesh = flesh_of_hand({366, 396});
-  scene.hints[0].flesh = flesh;
+  const auto capsules = capsules_of_hand({366, 396});
+  scene.hints[0].capsules = capsules;
   scene.hints[0].sure_px = 1;
   scene.hints[0].most_px = 14;
   scene.find(finder);
@@ -354,8 +354,8 @@ TEST(MaskFinder, AHandThatIsSomewhatOffItsBonesIsWhollyFound) {
 TEST(MaskFinder, BonesThatAreFarOffDoNotCutTheHandToTheirShape) {
   Scene scene;
   scene.hand({360, 400});
-  const auto flesh = flesh_of_hand({380, 370});
-  scene.hints[0].flesh = flesh;
+  const auto capsules = capsules_of_hand({380, 370});
+  scene.hints[0].capsules = capsules;
   scene.hints[0].sure_px = 1;
   scene.hints[0].most_px = 14;
   MaskFinder finder({});

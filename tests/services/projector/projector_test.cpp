@@ -170,7 +170,7 @@ TEST(FileProjector, WritesWhatIsLitAndNothingElse) {
 TEST(FileProjector, TwoCannotWriteIntoOneFolder) {
   test::Scratch scratch;
   auto first = open_file_projector(scratch.path());
-  const auto second = open_file_projector(scratch.path());  // a spare, while the first one works
+  const auto second = open_file_projector(scratch.path());  // a standby, while the first one works
   SmallFrame small;
   ASSERT_TRUE((*first)->present(small.frame, 1, kLight, Deadline::in(5s)));
   const auto refused = (*second)->present(small.frame, 1, kLight, Deadline::in(5s));

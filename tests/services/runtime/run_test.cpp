@@ -288,8 +288,8 @@ TEST_F(Run, TheListOfBackEndsIsANameAndASentenceALine) {
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "twin    Models one.\nreplay  Plays one.\n");
 }
 
-/// A daemon that is started as a spare, and the supervisor's ends of its pipes.
-class Spare : public Run {
+/// A daemon that is started as a standby, and the supervisor's ends of its pipes.
+class Standby : public Run {
  protected:
   void SetUp() override {
     Run::SetUp();
@@ -301,7 +301,7 @@ class Spare : public Run {
   int ready_[2], turn_[2];
 };
 
-TEST_F(Spare, PreparesItselfAndTakesWhatOnlyOneMayHaveInItsTurn) {
+TEST_F(Standby, PreparesItselfAndTakesWhatOnlyOneMayHaveInItsTurn) {
   give_rings(poses_, marks_);
   const auto again = [](const ipc::Segment& ring) {
     return ipc::Segment::open(UniqueFd(dup(ring.fd()))).value();
@@ -310,7 +310,7 @@ TEST_F(Spare, PreparesItselfAndTakesWhatOnlyOneMayHaveInItsTurn) {
   std::optional worker_marks(ipc::Writer<msg::StageMarks>::attach(again(marks_)).value());
   auto marks = ipc::Reader<msg::StageMarks>::attach(again(marks_)).value();
 
-  std::thread spare([&] {
+  std::thread standby([&] {
     daemon([](Context& context) {
       context.stand_by();
       must(context.writer<msg::HandPoses>("pose.hands")).publish({});
@@ -326,22 +326,22 @@ TEST_F(Spare, PreparesItselfAndTakesWhatOnlyOneMayHaveInItsTurn) {
   EXPECT_EQ(write(turn_[1], "1", 1), 1);
   while (byte == 's') ASSERT_EQ(read(ready_[0], &byte, 1), 1);
   EXPECT_EQ(byte, '\n');
-  spare.join();
+  standby.join();
   const auto mark = marks.next(Deadline::now());
   ASSERT_TRUE(mark) << "its marks go into the ring that was the worker's";
   EXPECT_EQ((*mark)->header.origin_ns, 7);
 }
 
-TEST_F(Spare, SaysAgainAndAgainThatItIsThere) {
-  std::thread spare([&] { daemon([](Context& context) { context.stand_by(); }); });
+TEST_F(Standby, SaysAgainAndAgainThatItIsThere) {
+  std::thread standby([&] { daemon([](Context& context) { context.stand_by(); }); });
   char bytes[3];
   for (char& byte : bytes) EXPECT_EQ(read(ready_[0], &byte, 1), 1);
   EXPECT_EQ(std::string(bytes, 3), "sss");
   EXPECT_EQ(write(turn_[1], "1", 1), 1);
-  spare.join();
+  standby.join();
 }
 
-TEST_F(Spare, ThatNeverStandsByWaitsAtItsFirstWriterOrWhenItIsReady) {
+TEST_F(Standby, ThatNeverStandsByWaitsAtItsFirstWriterOrWhenItIsReady) {
   close(turn_[1]);  // nobody will ever give it its turn
   give_rings(poses_, marks_);
   EXPECT_EXIT(
@@ -358,7 +358,7 @@ TEST_F(Spare, ThatNeverStandsByWaitsAtItsFirstWriterOrWhenItIsReady) {
       ExitedWithCode(0), "");
 }
 
-TEST_F(Spare, ThatIsToldToStopWhileItWaitsEndsWithZero) {
+TEST_F(Standby, ThatIsToldToStopWhileItWaitsEndsWithZero) {
   const auto told = [](Context& context) {
     raise(SIGTERM);
     context.stand_by();

@@ -111,21 +111,21 @@ TEST(Child, GrandchildrenEndWithTheService) {
   EXPECT_NE(kill(grandchild, 0), 0);
 }
 
-TEST(Child, ASpareGetsItsTurnThroughADescriptorOfItsOwn) {
+TEST(Child, AStandbyGetsItsTurnThroughADescriptorOfItsOwn) {
   auto child =
       Child::spawn(
           {.program = "/bin/bash",
            .arguments = {"-c", "read -n 1 -u $HANDCAST_STANDBY_FD turn || exit 3; exit $turn"},
            .rings = {},
-           .spare = true})
+           .standby = true})
           .value();
   EXPECT_FALSE(child.try_reap());
   child.give_turn();
   EXPECT_EQ(wait_for(child).code, 1) << "its turn is the byte '1'";
 }
 
-TEST(Child, ASpareSeesTheEndOfItsSupervisor) {
-  pid_t spare = 0;
+TEST(Child, AStandbySeesTheEndOfItsSupervisor) {
+  pid_t standby = 0;
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const auto supervisor = fork();
@@ -134,16 +134,16 @@ TEST(Child, ASpareSeesTheEndOfItsSupervisor) {
         Child::spawn({.program = "/bin/bash",
                       .arguments = {"-c", "read -n 1 -u $HANDCAST_STANDBY_FD turn || exit 0"},
                       .rings = {},
-                      .spare = true});
+                      .standby = true});
     const pid_t pid = child ? child->pid() : 0;
     _exit(write(ends[1], &pid, sizeof pid) == sizeof pid
               ? 0
               : 1);  // without destructors, as by SIGKILL
   }
   close(ends[1]);
-  ASSERT_EQ(read(ends[0], &spare, sizeof spare), static_cast<ssize_t>(sizeof spare));
+  ASSERT_EQ(read(ends[0], &standby, sizeof standby), static_cast<ssize_t>(sizeof standby));
   waitpid(supervisor, nullptr, 0);
-  EXPECT_TRUE(goes(spare));
+  EXPECT_TRUE(goes(standby));
 }
 
 TEST(Child, AServiceOutlivesItsSupervisor) {

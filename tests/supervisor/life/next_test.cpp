@@ -375,7 +375,7 @@ TEST(Next, APersonSeesOneOfSixStates) {
   EXPECT_EQ(shown(kAwaiting), State::starting);
   EXPECT_EQ(shown(kReady), State::ready);
   EXPECT_EQ(shown(kKilled), State::starting) << "about to be started again";
-  EXPECT_EQ(shown(worker::AwaitingSpare{}), State::stopping);
+  EXPECT_EQ(shown(worker::AwaitingStandby{}), State::stopping);
 }
 
 }  // namespace

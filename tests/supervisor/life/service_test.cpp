@@ -236,7 +236,8 @@ TEST_F(PublishingService, MayBeSilentAsLongAsItsNeedsAreNotReady) {
   run_until([&] { return pose.restarts() > 0; });
 }
 
-/// A service with a spare. Each process that has prepared itself leaves its number in a file of its
+/// A service with a standby. Each process that has prepared itself leaves its number in a file of
+/// its
 
 }  // namespace
 }  // namespace handcast::supervisor

@@ -45,18 +45,18 @@ struct StateText {
     return fmt::format("stopping{}{}", s.kill_ns ? " until " + at(*s.kill_ns) : ", killed",
                        kThen[static_cast<std::size_t>(s.then)]);
   }
-  std::string operator()(const worker::AwaitingSpare&) const { return "awaiting its spare"; }
+  std::string operator()(const worker::AwaitingStandby&) const { return "awaiting its standby"; }
 
-  std::string operator()(const spare::None&) const { return "none"; }
-  std::string operator()(const spare::Due& s) const { return "due at " + at(s.start_ns); }
-  std::string operator()(const spare::Preparing& s) const {
+  std::string operator()(const standby::None&) const { return "none"; }
+  std::string operator()(const standby::Due& s) const { return "due at " + at(s.start_ns); }
+  std::string operator()(const standby::Preparing& s) const {
     return "preparing until " + at(s.late_ns);
   }
-  std::string operator()(const spare::Prepared& s) const {
+  std::string operator()(const standby::Prepared& s) const {
     return fmt::format("prepared, heard at {}", at(s.sign_ns));
   }
-  std::string operator()(const spare::Killed&) const { return "killed"; }
-  std::string operator()(const spare::Leaving& s) const {
+  std::string operator()(const standby::Killed&) const { return "killed"; }
+  std::string operator()(const standby::Leaving& s) const {
     return fmt::format("leaving{}{}", s.kill_ns ? " until " + at(*s.kill_ns) : ", killed",
                        s.start_ns ? ", next at " + at(*s.start_ns) : "");
   }
@@ -72,9 +72,9 @@ struct StateText {
     return action.for_good ? "ask to stop for good" : "ask to stop";
   }
   std::string operator()(const action::Kill&) const { return "kill"; }
-  std::string operator()(const action::SpawnSpare&) const { return "spawn spare"; }
-  std::string operator()(const action::AskSpareToStop&) const { return "ask spare to stop"; }
-  std::string operator()(const action::KillSpare&) const { return "kill spare"; }
+  std::string operator()(const action::SpawnStandby&) const { return "spawn standby"; }
+  std::string operator()(const action::AskStandbyToStop&) const { return "ask standby to stop"; }
+  std::string operator()(const action::KillStandby&) const { return "kill standby"; }
   std::string operator()(const action::ReadLastWords&) const { return "read last words"; }
   std::string operator()(const action::Warn& action) const { return "warn: " + action.sentence; }
   std::string operator()(const action::Tell& action) const {
@@ -105,7 +105,7 @@ struct Machine {
     return text_of(step.actions);
   }
   std::string worker() const { return text_of(state.worker); }
-  std::string spare() const { return text_of(state.spare); }
+  std::string standby() const { return text_of(state.standby); }
 
   ServiceState state{};
   Rules rules{.name = "pose",

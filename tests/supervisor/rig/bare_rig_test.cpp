@@ -13,7 +13,7 @@
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "supervisor/succession/adoption.hpp"
-#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 #include "tests/supervisor/scope_scratch.hpp"
 #include "tests/system/command.hpp"
 #include "tests/system/variable.hpp"

@@ -9,7 +9,7 @@
 
 #include <array>
 
-#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 #include "tests/supervisor/succession/orphans.hpp"
 
 namespace handcast::supervisor {

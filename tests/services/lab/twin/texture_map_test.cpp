@@ -9,7 +9,7 @@
 #include <map>
 #include <numeric>
 
-#include "services/lab/twin/flesh_model.hpp"
+#include "services/lab/twin/ground_truth_mesh.hpp"
 #include "services/lab/twin/surface.hpp"
 #include "services/lab/twin/texture_lookup.hpp"
 #include "tests/services/lab/twin/world.hpp"
@@ -120,7 +120,7 @@ void expect_a_sound_map(const Mapped& both) {
 
 void expect_a_sound_map_to(const std::string& mesh) {
   const HandMesh drawn = mapped_hand();
-  const auto model = load_flesh_model(mesh, drawn);
+  const auto model = load_ground_truth_mesh(mesh, drawn);
   ASSERT_TRUE(model) << model.error().what;
   ASSERT_FALSE(model->is_drawn_mesh);
   expect_a_sound_map(mapped(drawn, flesh_on_bones(model->mesh, drawn.rest, 1, Flesh::of_model(),

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "services/lab/hand_maker/glb_write.hpp"
-#include "services/lab/twin/flesh_model.hpp"
+#include "services/lab/twin/ground_truth_mesh.hpp"
 #include "services/lab/twin/surface.hpp"
 #include "services/lab/twin/true_hands.hpp"
 #include "tests/scratch.hpp"
@@ -130,7 +130,7 @@ TEST(TrueHand, AModelWithoutTipsIsRefused) {
   HandMesh hand = drawn_hand();
   hand.rest[kIndexTip] = hand.rest[kIndexDistal];
   ASSERT_TRUE(renderer::save_hand(hand, folder.path() / "hand.glb"));
-  const auto model = load_flesh_model((folder.path() / "hand.glb").string(), drawn_hand());
+  const auto model = load_ground_truth_mesh((folder.path() / "hand.glb").string(), drawn_hand());
   ASSERT_FALSE(model);
   EXPECT_EQ(model.error().code, Errc::bad_config);
   EXPECT_THAT(model.error().what, testing::HasSubstr("no joints at the finger tips"));
@@ -139,8 +139,8 @@ TEST(TrueHand, AModelWithoutTipsIsRefused) {
 TEST(TrueHand, ARightHandInThePlaceOfTheLeftIsRefused) {
   for (const Side drawn : {Side::left, Side::right}) {
     const auto load = [&](Side side) {
-      return load_flesh_model(renderer::default_hand_file(side).string(),
-                              *renderer::load_hand_or_default({}, drawn));
+      return load_ground_truth_mesh(renderer::default_hand_file(side).string(),
+                                    *renderer::load_hand_or_default({}, drawn));
     };
     EXPECT_TRUE(load(Side::left)) << load(Side::left).error().what;
     ASSERT_FALSE(load(Side::right));
@@ -155,8 +155,8 @@ class OtherFlesh : public testing::TestWithParam<const char*> {
     if (GetParam() == std::string("webxr") && webxr_hand_file().empty())
       GTEST_SKIP() << "the WebXR hand is not installed; see scripts/setup --hands";
   }
-  static FleshModel model(Side side) {
-    auto model = load_flesh_model(GetParam(), *renderer::load_hand_or_default({}, side));
+  static GroundTruthMesh model(Side side) {
+    auto model = load_ground_truth_mesh(GetParam(), *renderer::load_hand_or_default({}, side));
     EXPECT_TRUE(model) << model.error().what;
     return std::move(*model);
   }

@@ -7,7 +7,7 @@
 
 namespace handcast::supervisor::test {
 
-inline constexpr pid_t kCameraPid = 100, kProjectorPid = 101, kSparePid = 102, kToolPid = 900,
+inline constexpr pid_t kCameraPid = 100, kProjectorPid = 101, kStandbyPid = 102, kToolPid = 900,
                        kDeadPid = 901;
 
 inline ProcessUsage process(std::string program, double cpu_s, std::int64_t taken_ns) {

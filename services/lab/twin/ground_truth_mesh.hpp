@@ -7,8 +7,8 @@
 
 namespace handcast::twin {
 
-/// The model of the true hands' flesh.
-struct FleshModel {
+/// The surface of a true hand, before a person's bones and widths are put on it.
+struct GroundTruthMesh {
   renderer::HandMesh mesh;     ///< of the wanted side
   bool is_drawn_mesh = false;  ///< it is the mesh that the cascade draws
 };
@@ -18,7 +18,8 @@ struct FleshModel {
 /// files of "webxr" it is `drawn`.
 /// Errors: those of renderer::load_hand(), bad_config (no joints at the finger tips,
 /// a right hand).
-Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::HandMesh& drawn);
+Result<GroundTruthMesh> load_ground_truth_mesh(const std::string& mesh,
+                                               const renderer::HandMesh& drawn);
 
 /// The file of the left WebXR hand that `scripts/setup --hands` installs; empty if there is none.
 /// HANDCAST_WEBXR_HAND names another one.

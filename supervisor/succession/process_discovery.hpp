@@ -21,7 +21,7 @@ struct FoundProcess {
 };
 
 /// The processes of this user's services, of all rigs or of the rig `name`, whoever started them:
-/// those with kRigVariable in their environment that lead a session. Also finds spares, and
+/// those with kRigVariable in their environment that lead a session. Also finds standbys, and
 /// services that no supervisor knows of.
 /// @{
 std::vector<FoundProcess> find_services();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/succession/census.hpp"
+#include "supervisor/succession/process_discovery.hpp"
 
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -14,9 +14,9 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-using Census = Orphans;
+using ProcessDiscovery = Orphans;
 
-TEST_F(Census, AServiceIsFoundByItsEnvironment) {
+TEST_F(ProcessDiscovery, AServiceIsFoundByItsEnvironment) {
   auto& child = service("sleep 1000; true", 42);
   const auto found = find_services("desk");
   ASSERT_THAT(found, SizeIs(1));
@@ -31,26 +31,26 @@ TEST_F(Census, AServiceIsFoundByItsEnvironment) {
   EXPECT_THAT(find_services("desk"), IsEmpty());  // a zombie is no service
 }
 
-TEST_F(Census, AnInstanceOfAProgramHasItsOwnName) {
+TEST_F(ProcessDiscovery, AnInstanceOfAProgramHasItsOwnName) {
   service("sleep 1000; true", now_ns(), {"handcast-camera", "--as", "camera2", "--config", "x"});
   const auto found = find_services("desk");
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0].service, "camera2");
 }
 
-TEST_F(Census, TheProcessesThatAServiceStartsAreNotServices) {
+TEST_F(ProcessDiscovery, TheProcessesThatAServiceStartsAreNotServices) {
   service("sleep 1000 & sleep 1000");
   usleep(50'000);
   EXPECT_THAT(find_services("desk"), SizeIs(1));
 }
 
-TEST_F(Census, ARigOfAnotherScopeIsNotFound) {
+TEST_F(ProcessDiscovery, ARigOfAnotherScopeIsNotFound) {
   service("exec sleep 1000");
   setenv(control::kScopeVariable, "another", 1);
   EXPECT_THAT(find_services(), IsEmpty());
 }
 
-TEST_F(Census, ServicesAreAskedAndThenKilled) {
+TEST_F(ProcessDiscovery, ServicesAreAskedAndThenKilled) {
   auto& polite = service("exec sleep 1000");
   auto& deaf = deaf_service();
   EXPECT_EQ(end_services("sofa", 0, now_ns()), 0);
@@ -60,7 +60,7 @@ TEST_F(Census, ServicesAreAskedAndThenKilled) {
   EXPECT_THAT(find_services("desk"), IsEmpty());
 }
 
-TEST_F(Census, AStoppedServiceIsEndedToo) {
+TEST_F(ProcessDiscovery, AStoppedServiceIsEndedToo) {
   auto& child = service("exec sleep 1000");
   child.signal(SIGSTOP);
   while (!look_at_process(child.pid())->all_stopped) usleep(1000);
@@ -68,7 +68,7 @@ TEST_F(Census, AStoppedServiceIsEndedToo) {
   EXPECT_EQ(child.try_reap()->code, SIGKILL);
 }
 
-TEST_F(Census, ARigThatWasStartedSinceIsLeftAlone) {
+TEST_F(ProcessDiscovery, ARigThatWasStartedSinceIsLeftAlone) {
   const auto before_ns = now_ns();
   auto& child = service("exec sleep 1000", before_ns + 1);
   EXPECT_EQ(end_services("desk", 0, before_ns), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/lab/twin/flesh_model.hpp"
+#include "services/lab/twin/ground_truth_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -24,7 +24,7 @@ renderer::HandMesh mirrored(renderer::HandMesh hand) {
   return hand;
 }
 
-FleshModel of_side(renderer::HandMesh left, renderer::Side side) {
+GroundTruthMesh of_side(renderer::HandMesh left, renderer::Side side) {
   return {side == renderer::Side::left ? std::move(left) : mirrored(std::move(left)), false};
 }
 
@@ -57,13 +57,14 @@ std::filesystem::path webxr_hand_file() {
   return std::filesystem::exists(installed, ignored) ? installed : std::filesystem::path();
 }
 
-Result<FleshModel> load_flesh_model(const std::string& mesh, const renderer::HandMesh& drawn) {
-  if (mesh == "handcast") return FleshModel{drawn, true};
+Result<GroundTruthMesh> load_ground_truth_mesh(const std::string& mesh,
+                                               const renderer::HandMesh& drawn) {
+  if (mesh == "handcast") return GroundTruthMesh{drawn, true};
   if (mesh == "implicit") return of_side(implicit_hand(), drawn.side);
   std::filesystem::path file = mesh;
   if (mesh == "webxr") {
     file = webxr_hand_file();
-    if (file.empty()) return FleshModel{drawn, true};
+    if (file.empty()) return GroundTruthMesh{drawn, true};
   }
   auto left = renderer::load_hand(file, renderer::Side::left);
   if (!left) return tl::make_unexpected(left.error());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A service with two processes: a worker and its spare, or its replacement.
+// A service with two processes: a worker and its standby, or its replacement.
 #include <sys/resource.h>
 
 #include "tests/supervisor/life/service_fixture.hpp"
@@ -10,19 +10,19 @@ namespace {
 using testing::ElementsAre;
 
 /// own.
-class ServiceWithSpare : public ServiceTest {
+class ServiceWithStandby : public ServiceTest {
  protected:
   void SetUp() override {
     ServiceTest::SetUp();
     process_.standby = true;
   }
   Service& ready_service() {
-    auto& pose = service(kSpares);
+    auto& pose = service(kStandbys);
     pose.start();
-    run_until([&] { return pose.state() == State::ready && pose.spare_pid() != 0; });
+    run_until([&] { return pose.state() == State::ready && pose.standby_pid() != 0; });
     return pose;
   }
-  static constexpr auto kSpares =
+  static constexpr auto kStandbys =
       "if [ -n \"$HANDCAST_STANDBY_FD\" ]; then\n"
       "  printf s >&$HANDCAST_READY_FD\n"
       "  read -n 1 -u $HANDCAST_STANDBY_FD || exit 0\n"
@@ -30,22 +30,22 @@ class ServiceWithSpare : public ServiceTest {
       "echo >&$HANDCAST_READY_FD; exec sleep 1000";
 };
 
-TEST_F(ServiceWithSpare, TheSpareTakesOverWhenTheWorkerDies) {
+TEST_F(ServiceWithStandby, TheStandbyTakesOverWhenTheWorkerDies) {
   auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
+  const auto worker = pose.pid(), standby = pose.standby_pid();
   ::kill(worker, SIGKILL);
   run_until([&] { return pose.pid() != worker && pose.state() == State::ready; });
-  EXPECT_EQ(pose.pid(), spare);
+  EXPECT_EQ(pose.pid(), standby);
   EXPECT_EQ(pose.restarts(), 1);
-  run_until([&] { return pose.spare_pid() != 0; });
-  EXPECT_NE(pose.spare_pid(), spare) << "there is a new one";
+  run_until([&] { return pose.standby_pid() != 0; });
+  EXPECT_NE(pose.standby_pid(), standby) << "there is a new one";
 }
 
-TEST_F(ServiceWithSpare, ASpareThatDiesIsReplacedAndDoesNotCount) {
+TEST_F(ServiceWithStandby, AStandbyThatDiesIsReplacedAndDoesNotCount) {
   auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
-  ::kill(spare, SIGKILL);
-  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  const auto worker = pose.pid(), standby = pose.standby_pid();
+  ::kill(standby, SIGKILL);
+  run_until([&] { return pose.standby_pid() != 0 && pose.standby_pid() != standby; });
   EXPECT_EQ(pose.pid(), worker);
   EXPECT_EQ(pose.restarts(), 0);
   EXPECT_EQ(pose.state(), State::ready);
@@ -66,43 +66,43 @@ class NoDescriptorsLeft {
   rlimit before_{};
 };
 
-TEST_F(ServiceWithSpare, BothOfWhichCannotBeStartedAtTheSameMomentAreStartedLater) {
+TEST_F(ServiceWithStandby, BothOfWhichCannotBeStartedAtTheSameMomentAreStartedLater) {
   auto& pose = ready_service();
   {
     const NoDescriptorsLeft none;
     const auto worker = pose.pid();
-    ::kill(pose.spare_pid(), SIGKILL);
-    run_until([&] { return pose.spare_pid() == 0; });
+    ::kill(pose.standby_pid(), SIGKILL);
+    run_until([&] { return pose.standby_pid() == 0; });
     ::kill(worker, SIGKILL);
     run_until([&] { return !pose.is_running(); });
     pose.tick(now_ns() + seconds_to_ns(60), look());  // both are due
     EXPECT_FALSE(pose.is_running());
   }
   pose.tick(now_ns() + seconds_to_ns(120), look());
-  run_until([&] { return pose.state() == State::ready && pose.spare_pid() != 0; });
+  run_until([&] { return pose.state() == State::ready && pose.standby_pid() != 0; });
 }
 
-TEST_F(ServiceWithSpare, ASpareThatHangsIsReplaced) {
+TEST_F(ServiceWithStandby, AStandbyThatHangsIsReplaced) {
   launch_.silent_s = 0.2;
   auto& pose = ready_service();
-  const auto spare =
-      pose.spare_pid();  // the script says one 's' and then nothing, as if it were stopped
-  run_until([&] { return pose.spare_pid() != 0 && pose.spare_pid() != spare; });
+  const auto standby =
+      pose.standby_pid();  // the script says one 's' and then nothing, as if it were stopped
+  run_until([&] { return pose.standby_pid() != 0 && pose.standby_pid() != standby; });
   EXPECT_EQ(pose.restarts(), 0);
 }
 
 /// A service without standby whose processes can be prepared, except with the back end "broken".
-class ReplacedService : public ServiceWithSpare {
+class ReplacedService : public ServiceWithStandby {
  protected:
   void SetUp() override {
-    ServiceWithSpare::SetUp();
+    ServiceWithStandby::SetUp();
     process_.standby = false;
   }
   Service& ready_service() {
     auto& pose = service(
         "case \"$*\" in *pose.backend=broken*) echo '1.0 pose error it is broken' >&2; exit 100;;"
         " esac\n" +
-        std::string(kSpares));
+        std::string(kStandbys));
     pose.start();
     run_until([&] { return pose.state() == State::ready; });
     return pose;
@@ -179,36 +179,36 @@ TEST_F(ReplacedService, AStopInTheMiddleEndsBothAndLeavesTheOldSettings) {
 
 TEST_F(ReplacedService, AnAdoptedProcessIsReplacedToo) {
   auto& first = ready_service();
-  auto& second = adopting(first, kSpares, 0);
+  auto& second = adopting(first, kStandbys, 0);
   const auto adopted = second.pid();
   second.prepare(second.settings(), {}, true);
   run_until([&] { return second.replacement_is_prepared(); });
   second.hand_over();
-  run_until([&] { return second.state() == State::ready && second.spare_pid() == 0; });
+  run_until([&] { return second.state() == State::ready && second.standby_pid() == 0; });
   EXPECT_NE(second.pid(), adopted);
   second.stop();
   run_until([&] { return second.state() == State::stopped; });
 }
 
-TEST_F(ServiceWithSpare, StopEndsBoth) {
+TEST_F(ServiceWithStandby, StopEndsBoth) {
   auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
+  const auto worker = pose.pid(), standby = pose.standby_pid();
   pose.stop();
   run_until([&] { return pose.state() == State::stopped; });
   EXPECT_NE(::kill(worker, 0), 0);
-  EXPECT_NE(::kill(spare, 0), 0);
+  EXPECT_NE(::kill(standby, 0), 0);
   EXPECT_FALSE(pose.is_running());
 }
 
-TEST_F(ServiceWithSpare, RestartReplacesBoth) {
+TEST_F(ServiceWithStandby, RestartReplacesBoth) {
   auto& pose = ready_service();
-  const auto worker = pose.pid(), spare = pose.spare_pid();
+  const auto worker = pose.pid(), standby = pose.standby_pid();
   pose.restart();
   run_until([&] {
-    return pose.state() == State::ready && pose.pid() != worker && pose.spare_pid() != 0 &&
-           pose.spare_pid() != spare;
+    return pose.state() == State::ready && pose.pid() != worker && pose.standby_pid() != 0 &&
+           pose.standby_pid() != standby;
   });
-  EXPECT_NE(pose.pid(), spare) << "a spare of the old settings does not take over";
+  EXPECT_NE(pose.pid(), standby) << "a standby of the old settings does not take over";
 }
 
 }  // namespace
