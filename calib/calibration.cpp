@@ -10,11 +10,6 @@
 namespace handcast::calib {
 namespace {
 
-glm::dvec2 apply(const glm::dmat3& homography, const glm::dvec2& px) {
-  const auto mapped = homography * glm::dvec3(px, 1);
-  return glm::dvec2(mapped) / mapped.z;
-}
-
 glm::dmat3 translation(double x, double y) { return {1, 0, 0, 0, 1, 0, x, y, 1}; }
 
 /// A homography for the reference rig, since the authors of the paper published none. It maps the
@@ -51,34 +46,17 @@ double distance_from_rigid(const glm::dmat4& transform) {
   return distance;
 }
 
-glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px) const {
-  return apply(projector_from_camera, camera_px);
-}
-
-glm::dvec2 Calibration::to_projector(const glm::dvec2& camera_px, double depth_m) const {
-  return apply(homography_at(depth_m), camera_px);
-}
-
-glm::dmat3 Calibration::homography_at(double depth_m) const {
-  auto homography = projector_from_camera;
-  homography[2] += parallax * (1 / depth_m - 1 / plane_m);
-  return homography;
-}
-
 glm::dmat4x3 Calibration::projection() const {
-  const auto from_ray = projector_from_camera * camera.matrix();
-  return {from_ray[0], from_ray[1], from_ray[2] - parallax / plane_m, parallax};
-}
-
-glm::dvec2 Calibration::to_camera(const glm::dvec2& projector_px) const {
-  return apply(glm::inverse(projector_from_camera), projector_px);
+  const auto from_ray = projector.from_camera * camera.matrix();
+  return {from_ray[0], from_ray[1], from_ray[2] - projector.parallax / projector.plane_m,
+          projector.parallax};
 }
 
 double Calibration::mm_per_projector_px(double distance_m) const {
-  const glm::dvec2 centre((projector_width_px - 1) / 2.0, (projector_height_px - 1) / 2.0);
-  const auto here = to_camera(centre);
-  const auto right = to_camera(centre + glm::dvec2(1, 0)) - here,
-             down = to_camera(centre + glm::dvec2(0, 1)) - here;
+  const glm::dvec2 centre((projector.width_px - 1) / 2.0, (projector.height_px - 1) / 2.0);
+  const auto here = projector.camera_pixel_of(centre);
+  const auto right = projector.camera_pixel_of(centre + glm::dvec2(1, 0)) - here,
+             down = projector.camera_pixel_of(centre + glm::dvec2(0, 1)) - here;
   // Area of one projector pixel in the camera image.
   const double area_px2 = std::abs(right.x * down.y - right.y * down.x);
   return 1000 * distance_m * std::sqrt(area_px2 / (camera.fx_px * camera.fy_px));
@@ -113,8 +91,8 @@ Calibration reference_rig() {
                        -0.01631111092865467, 0.6019535064697266, 0.7983646988868713, 0,   //
                        0.18809837102890015, 0.7860618829727173, -0.5888343453407288, 0,   //
                        -0.1351909637451172, -0.2582590026855469, 0.3932641906738281, 1});
-  rig.projector_from_camera =
-      coaxial_homography(rig.camera, rig.projector_width_px, rig.projector_height_px);
+  rig.projector.from_camera =
+      coaxial_homography(rig.camera, rig.projector.width_px, rig.projector.height_px);
   return rig;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "calib/projector_model.hpp"
 #include "config/sections/viewpoint.hpp"
 #include "ipc/base/result.hpp"
 
@@ -64,15 +65,6 @@ struct SecondCamera {
 
 /// The calibration of a rig: camera, tracker and projector. The names of transforms read from right
 /// to left.
-///
-/// The projector is a pinhole ("plane and parallax", Hartley & Zisserman 2004, section 13.3): with
-/// p the undistorted camera pixel of a point, z its depth in camera space, H the homography that
-/// holds on the plane z = d, and e the image of the camera's centre in the projector, on the scale
-/// of H,
-///
-///     projector px ~ H p + e (1 / z - 1 / d)
-///
-/// If camera and projector are coaxial, e is 0 and H holds at every depth.
 struct Calibration {
   /// Tells the calibrations of files apart: a hash of all that was read, never 0. Messages carry
   /// it, so that no service takes the pixels of one calibration for those of another.
@@ -85,26 +77,11 @@ struct Calibration {
   CameraModel camera;                   ///< the infrared camera
   std::optional<SecondCamera> camera2;  ///< empty: the rig has one camera
   glm::dmat4 camera_from_tracker{1};    ///< rigid, in metres
-  glm::dmat3 projector_from_camera{1};  ///< H: undistorted camera px to projector px
-  glm::dvec3 parallax{0};               ///< e: projector px times m
-  double plane_m = 0.73;                ///< d
-  /// Size of the projector image in pixels.
-  /// @{
-  int projector_width_px = 1024;
-  int projector_height_px = 768;
-  /// @}
+  ProjectorModel projector;
   Made made;  ///< not a part of `id`
 
-  /// Maps undistorted camera pixels to projector pixels, for points on the plane z = plane_m.
-  glm::dvec2 to_projector(const glm::dvec2& camera_px) const;
-  /// The same for points at a depth above 0.
-  glm::dvec2 to_projector(const glm::dvec2& camera_px, double depth_m) const;
-  /// The homography that holds on the plane at a depth above 0.
-  glm::dmat3 homography_at(double depth_m) const;
   /// Maps homogeneous points in camera space, metres, to homogeneous projector pixels.
   glm::dmat4x3 projection() const;
-  /// Maps projector pixels to undistorted camera pixels of the plane z = plane_m.
-  glm::dvec2 to_camera(const glm::dvec2& projector_px) const;
   /// Size of a projector pixel in millimetres on a plane that faces the camera at `distance_m`.
   double mm_per_projector_px(double distance_m) const;
 };

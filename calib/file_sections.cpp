@@ -35,17 +35,17 @@ TransformSection to_section(const glm::dmat4& transform) {
 
 File to_file(const Calibration& calibration) {
   const auto& tracker = calibration.camera_from_tracker;
-  const auto& homography = calibration.projector_from_camera;
-  const auto& e = calibration.parallax;
+  const auto& homography = calibration.projector.from_camera;
+  const auto& e = calibration.projector.parallax;
   return {to_section(calibration.camera_device, calibration.camera),
           to_section(tracker),
           {calibration.projector_device,
-           calibration.projector_width_px,
-           calibration.projector_height_px,
+           calibration.projector.width_px,
+           calibration.projector.height_px,
            row_of(homography, 0),
            row_of(homography, 1),
            row_of(homography, 2),
-           calibration.plane_m,
+           calibration.projector.plane_m,
            {plain(e.x), plain(e.y), plain(e.z)}},
           calibration.made};
 }
@@ -80,13 +80,14 @@ Calibration to_calibration(const File& file) {
   calibration.camera = to_camera_model(file.camera);
   calibration.camera_from_tracker = to_transform(file.camera_from_tracker);
   const auto& projector = file.projector;
-  calibration.projector_width_px = projector.width_px;
-  calibration.projector_height_px = projector.height_px;
-  set_row(calibration.projector_from_camera, 0, projector.x);
-  set_row(calibration.projector_from_camera, 1, projector.y);
-  set_row(calibration.projector_from_camera, 2, projector.w);
-  calibration.parallax = {projector.parallax[0], projector.parallax[1], projector.parallax[2]};
-  calibration.plane_m = projector.plane_m;
+  calibration.projector.width_px = projector.width_px;
+  calibration.projector.height_px = projector.height_px;
+  set_row(calibration.projector.from_camera, 0, projector.x);
+  set_row(calibration.projector.from_camera, 1, projector.y);
+  set_row(calibration.projector.from_camera, 2, projector.w);
+  calibration.projector.parallax = {projector.parallax[0], projector.parallax[1],
+                                    projector.parallax[2]};
+  calibration.projector.plane_m = projector.plane_m;
   calibration.made = file.made;
   return calibration;
 }

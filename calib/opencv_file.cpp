@@ -48,7 +48,7 @@ static std::string second_camera_text(const SecondCamera& second) {
 
 std::string print_opencv_file(const Calibration& calibration) {
   const auto& camera = calibration.camera;
-  const auto& parallax = calibration.parallax;
+  const auto& parallax = calibration.projector.parallax;
   return fmt::format("%YAML:1.0\n---\nimage_width: {}\nimage_height: {}\n", camera.width_px,
                      camera.height_px) +
          text_line("camera_device", calibration.camera_device) +
@@ -56,12 +56,12 @@ std::string print_opencv_file(const Calibration& calibration) {
          matrix_text("distortion_coefficients", 1, 5,
                      {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}) +
          matrix_text("camera_from_tracker", 4, 4, rows_of(calibration.camera_from_tracker)) +
-         fmt::format("projector_width: {}\nprojector_height: {}\n", calibration.projector_width_px,
-                     calibration.projector_height_px) +
+         fmt::format("projector_width: {}\nprojector_height: {}\n", calibration.projector.width_px,
+                     calibration.projector.height_px) +
          text_line("projector_device", calibration.projector_device) +
-         matrix_text("projector_from_camera", 3, 3, rows_of(calibration.projector_from_camera)) +
+         matrix_text("projector_from_camera", 3, 3, rows_of(calibration.projector.from_camera)) +
          matrix_text("parallax", 3, 1, {parallax.x, parallax.y, parallax.z}) +
-         fmt::format("plane_m: {:#}\n", calibration.plane_m) +
+         fmt::format("plane_m: {:#}\n", calibration.projector.plane_m) +
          (calibration.camera2 ? second_camera_text(*calibration.camera2) +
                                     text_line("made_lens2", calibration.made.lens2) +
                                     text_line("made_pair", calibration.made.pair)

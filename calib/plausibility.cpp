@@ -23,8 +23,8 @@ constexpr double kMostArea_px2 = 16e6;
 /// of them lies nowhere, that is on or behind the horizon of the homography.
 std::vector<glm::dvec2> screen_in_camera(const Calibration& calibration) {
   constexpr int kSteps = 16;
-  const glm::dmat3 camera_from_projector = glm::inverse(calibration.projector_from_camera);
-  const glm::dvec2 last(calibration.projector_width_px - 1, calibration.projector_height_px - 1);
+  const glm::dmat3 camera_from_projector = glm::inverse(calibration.projector.from_camera);
+  const glm::dvec2 last(calibration.projector.width_px - 1, calibration.projector.height_px - 1);
   std::vector<glm::dvec2> grid;
   double side = 0;  // of the horizon, at the first point
   for (int i = 0; i <= kSteps; ++i)
@@ -72,14 +72,15 @@ std::string fault_of_homography(const Calibration& calibration) {
 void check_parallax(const Calibration& calibration, std::string_view file, config::Faults& faults) {
   for (const double share : {0.85, 1.15}) {
     auto other = calibration;
-    other.projector_from_camera = calibration.homography_at(share * calibration.plane_m);
-    const bool is_regular = std::abs(glm::determinant(other.projector_from_camera)) > 1e-9;
+    other.projector.from_camera =
+        calibration.projector.homography_at(share * calibration.projector.plane_m);
+    const bool is_regular = std::abs(glm::determinant(other.projector.from_camera)) > 1e-9;
     if (is_regular && fault_of_homography(other).empty()) continue;
     faults.add(
         fmt::format("{}: projector.parallax: at {:.2f} m, where the plane of the homography "
                     "is at {:.2f} m, the light would miss the camera's image. Is it in "
                     "pixels times metres?",
-                    file, share * calibration.plane_m, calibration.plane_m));
+                    file, share * calibration.projector.plane_m, calibration.projector.plane_m));
     return;
   }
 }
@@ -184,11 +185,11 @@ void check_pair(const Calibration& calibration, std::string_view file, config::F
 void check_plausible(const Calibration& calibration, std::string_view file,
                      config::Faults& faults) {
   check_transform("camera_from_tracker", "tracker", calibration.camera_from_tracker, file, faults);
-  check_size("projector", calibration.projector_width_px, calibration.projector_height_px, file,
+  check_size("projector", calibration.projector.width_px, calibration.projector.height_px, file,
              faults);
   check_camera("camera", calibration.camera, file, faults);
   if (calibration.camera2) check_pair(calibration, file, faults);
-  if (!(std::abs(glm::determinant(calibration.projector_from_camera)) > 1e-9))
+  if (!(std::abs(glm::determinant(calibration.projector.from_camera)) > 1e-9))
     faults.add(fmt::format(
         "{}: projector: the rows x, y, w of the homography are linearly dependent", file));
   else if (const auto fault = fault_of_homography(calibration); !fault.empty())

@@ -12,23 +12,23 @@ namespace handcast::calib {
 
 Calibration with_scaled_projector(const Calibration& calibration, double factor) {
   Calibration scaled = calibration;
-  scaled.projector_width_px =
-      static_cast<int>(std::lround(calibration.projector_width_px * factor));
-  scaled.projector_height_px =
-      static_cast<int>(std::lround(calibration.projector_height_px * factor));
+  scaled.projector.width_px =
+      static_cast<int>(std::lround(calibration.projector.width_px * factor));
+  scaled.projector.height_px =
+      static_cast<int>(std::lround(calibration.projector.height_px * factor));
   // The edge of the image stays where it is, half a pixel from the centre of the first pixel.
   const double shift_px = (factor - 1) / 2;
   const glm::dmat3 scale(factor, 0, 0, 0, factor, 0, shift_px, shift_px, 1);
-  scaled.projector_from_camera = scale * calibration.projector_from_camera;
-  scaled.parallax = scale * calibration.parallax;
+  scaled.projector.from_camera = scale * calibration.projector.from_camera;
+  scaled.projector.parallax = scale * calibration.projector.parallax;
   return scaled;
 }
 
 Result<Calibration> load_calibration(const std::filesystem::path& file, config::Packing packing) {
   auto calibration = load_calibration(file);
   if (!calibration || !config::has_half_size(packing)) return calibration;
-  const int width_px = calibration->projector_width_px,
-            height_px = calibration->projector_height_px;
+  const int width_px = calibration->projector.width_px,
+            height_px = calibration->projector.height_px;
   if (width_px % 2 != 0 || height_px % 2 != 0)
     return fail(Errc::bad_config,
                 fmt::format("projector.packing = \"{}\" needs a projector image of even width and "

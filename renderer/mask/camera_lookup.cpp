@@ -109,7 +109,7 @@ Rect bounds_of(Rect region, double limit, Map map) {
 /// on_plane + n (b.z on_plane - b); the lens's distortion is linearised.
 glm::vec2 slope_at(const calib::Calibration& calibration, const glm::dvec2& on_plane) {
   constexpr double kSmall = 0.01;  // 1/m
-  const auto b = glm::inverse(calibration.projector_from_camera) * calibration.parallax;
+  const auto b = glm::inverse(calibration.projector.from_camera) * calibration.projector.parallax;
   const auto moved = on_plane + kSmall * (b.z * on_plane - glm::dvec2(b));
   const auto slope =
       (calibration.camera.distort(moved) - calibration.camera.distort(on_plane)) / kSmall;
@@ -119,17 +119,17 @@ glm::vec2 slope_at(const calib::Calibration& calibration, const glm::dvec2& on_p
 }  // namespace
 
 CameraLookup::CameraLookup(const calib::Calibration& calibration, bool smooth)
-    : width_(calibration.projector_width_px),
-      height_(calibration.projector_height_px),
+    : width_(calibration.projector.width_px),
+      height_(calibration.projector.height_px),
       columns_((width_ + kStep - 1) / kStep + 1),
       rows_((height_ + kStep - 1) / kStep + 1),
       smooth_(smooth),
       calibration_(calibration) {
-  const bool is_coaxial = calibration.parallax == glm::dvec3(0);
+  const bool is_coaxial = calibration.projector.parallax == glm::dvec3(0);
   table_.reserve(static_cast<std::size_t>(columns_) * rows_);
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
-      const auto on_plane = calibration.to_camera({kStep * column, kStep * row});
+      const auto on_plane = calibration.projector.camera_pixel_of({kStep * column, kStep * row});
       const auto camera = calibration.camera.distort(on_plane);
       table_.push_back(glm::vec2(glm::clamp(camera, glm::dvec2(-kFar_px), glm::dvec2(kFar_px))));
       if (!is_coaxial) slopes_.push_back(slope_at(calibration, on_plane));
@@ -228,9 +228,9 @@ void CameraLookup::resample_block(View<const std::uint8_t> mask, const Block& bl
 
 Rect CameraLookup::to_projector(Rect camera_region, float nearness) const {
   if (camera_region.empty()) return {};
-  const double depth_m = 1 / (1 / calibration_.plane_m + nearness);
+  const double depth_m = 1 / (1 / calibration_.projector.plane_m + nearness);
   return bounds_of(camera_region, 1e5, [&](glm::dvec2 image_px) {
-    return calibration_.to_projector(calibration_.camera.undistort(image_px), depth_m);
+    return calibration_.projector.pixel_of(calibration_.camera.undistort(image_px), depth_m);
   });
 }
 

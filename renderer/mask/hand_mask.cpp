@@ -45,7 +45,7 @@ HandMask::HandMask(const config::Mask& settings, const calib::Calibration& calib
       lookup_(calibration, smooth),
       nearness_{NearnessGrid(lookup_.columns(), lookup_.rows(), CameraLookup::kStep),
                 NearnessGrid(lookup_.columns(), lookup_.rows(), CameraLookup::kStep)},
-      projector_mask_(calibration.projector_width_px, calibration.projector_height_px) {}
+      projector_mask_(calibration.projector.width_px, calibration.projector.height_px) {}
 
 void HandMask::clear_camera_mask(int width, int height) {
   if (camera_mask_.width() != width || camera_mask_.height() != height) {
@@ -133,10 +133,10 @@ Similarity HandMask::since_seen(const Found& found, const Moved& hand) const {
 /// nearness if the projector is not coaxial.
 Rect HandMask::region_of(std::size_t h, const Moved& hand, const Rect& image_region) {
   const Rect screen{0, 0, projector_mask_.width(), projector_mask_.height()};
-  if (calibration_.parallax == glm::dvec3(0))
+  if (calibration_.projector.parallax == glm::dvec3(0))
     return lookup_.to_projector(image_region).within(screen.x1, screen.y1);
   auto& nearness = nearness_[h];
-  nearness.set(hand.projected_px, hand.depths_m, calibration_.plane_m);
+  nearness.set(hand.projected_px, hand.depths_m, calibration_.projector.plane_m);
   return lookup_.to_projector(image_region, nearness.least())
       .joined(lookup_.to_projector(image_region, nearness.most()))
       .within(screen.x1, screen.y1);

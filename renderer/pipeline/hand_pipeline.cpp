@@ -183,7 +183,8 @@ LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px,
                                           const ProjectedPose& depths) const {
   LandmarkPoints points;
   for (int i = 0; i < kLandmarks; ++i)
-    points[i] = calibration_.to_projector(camera_px[i], static_cast<float>(depths.depths_m[i]));
+    points[i] =
+        calibration_.projector.pixel_of(camera_px[i], static_cast<float>(depths.depths_m[i]));
   return points;
 }
 

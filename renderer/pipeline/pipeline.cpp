@@ -56,7 +56,7 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
                    std::unique_ptr<Painter> painter)
     : settings_(settings),
       shading_(static_cast<float>(content.shading)),
-      screen_{0, 0, calibration.projector_width_px, calibration.projector_height_px},
+      screen_{0, 0, calibration.projector.width_px, calibration.projector.height_px},
       both_{std::move(left), std::move(right)},
       mask_(settings.mask, calibration, content.smooth),
       late_(registration_of(settings), settings.filter, calibration),

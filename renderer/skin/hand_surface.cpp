@@ -98,7 +98,7 @@ Skinned HandSurface::pose(const msg::HandPose& pose, const config::Skin& setting
   if (!shaded) std::fill(light_.begin(), light_.end(), presence);
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());
   return {seen_px_, landings_px_, depth_m_, lit_fully ? std::span<const float>() : light_,
-          glm::determinant(calibration.projector_from_camera * calibration.camera.matrix()) > 0
+          glm::determinant(calibration.projector.from_camera * calibration.camera.matrix()) > 0
               ? -1.0f
               : 1.0f};
 }

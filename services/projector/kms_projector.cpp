@@ -39,7 +39,7 @@ class KmsProjector final : public Projector {
 Result<std::unique_ptr<Projector>> open_kms(const config::Rig& rig,
                                             const calib::Calibration& calibration) {
   const auto& settings = rig.projector;
-  const int width_px = calibration.projector_width_px, height_px = calibration.projector_height_px;
+  const int width_px = calibration.projector.width_px, height_px = calibration.projector.height_px;
   auto screen =
       renderer::kms::Screen::open({.card = settings.kms.card,
                                    .connector = settings.kms.connector,

@@ -21,8 +21,8 @@ static void run_projector(service::Context& context) {
   const auto shares = projector ? projector->share_group() : renderer::ShareGroup();
   const auto pipeline = must(renderer::Pipeline::create(
       rig.cascade, rig.content, rig.hand, calibration, {},
-      renderer::open_painter(rig.projector.painter, calibration.projector_width_px,
-                             calibration.projector_height_px, shares)));
+      renderer::open_painter(rig.projector.painter, calibration.projector.width_px,
+                             calibration.projector.height_px, shares)));
   pipeline->show_surface(true);  // an observer may come at any time
   context.stand_by();
   if (!projector) projector = must(projector::open_projector(rig, calibration));
@@ -30,8 +30,8 @@ static void run_projector(service::Context& context) {
                            must(context.reader<msg::HandPoses>("pose.hands")),
                            must(context.reader<msg::Landmarks>("landmarks.hands")), calibration.id);
   projector::TestPictures test_pictures(must(context.reader<msg::TestPicture>(msg::kTestPictures)),
-                                        calibration.projector_width_px,
-                                        calibration.projector_height_px);
+                                        calibration.projector.width_px,
+                                        calibration.projector.height_px);
   projector::Brightness brightness(rig.projector, context.epoch_ns());
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
   auto* const show = rig.projector.packing == config::Packing::none ? projector::show_frames

@@ -15,8 +15,8 @@ namespace {
 
 std::unique_ptr<renderer::Packer> packer_for(const service::Context& context) {
   const auto output = calib::output_of(context.calibration(), context.rig().projector.packing);
-  return renderer::make_packer(context.rig().projector, output.projector_width_px,
-                               output.projector_height_px);
+  return renderer::make_packer(context.rig().projector, output.projector.width_px,
+                               output.projector.height_px);
 }
 
 /// The levels of a packed frame are those of the projector.

@@ -86,7 +86,7 @@ class WindowProjector final : public Projector {
 Result<std::unique_ptr<Projector>> open_window(const config::Rig& rig,
                                                const calib::Calibration& calibration) {
   const auto& settings = rig.projector;
-  const int width_px = calibration.projector_width_px, height_px = calibration.projector_height_px;
+  const int width_px = calibration.projector.width_px, height_px = calibration.projector.height_px;
   auto window = renderer::Window::open({.title = "handcast: " + rig.name,
                                         .width_px = width_px,
                                         .height_px = height_px,

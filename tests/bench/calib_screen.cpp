@@ -19,11 +19,11 @@
 namespace handcast::bench {
 namespace {
 
-using calib::DepthView, calib::ScreenModel, calib::test::kPlane_m;
+using calib::DepthView, calib::ProjectorModel, calib::test::kPlane_m;
 
 const calib::CameraModel kCamera = calib::test::bent_camera();
-const ScreenModel kCoaxial = calib::test::coaxial_screen();
-const ScreenModel kBeside = calib::test::screen_beside(0.15);
+const ProjectorModel kCoaxial = calib::test::coaxial_screen();
+const ProjectorModel kBeside = calib::test::screen_beside(0.15);
 const std::vector<double> kDepths_m{0.63, 0.73, 0.83};
 
 template <class T>
@@ -33,7 +33,7 @@ T must(Result<T> result) {
   std::exit(1);
 }
 
-double worst_px(const ScreenModel& believed, const ScreenModel& truth) {
+double worst_px(const ProjectorModel& believed, const ProjectorModel& truth) {
   return calib::test::worst_px(believed, truth, kCamera);
 }
 
@@ -42,7 +42,7 @@ struct Times {
   std::vector<double> decode_ms, homography_ms, screen_ms;
 };
 
-std::vector<DepthView> rendered_views(const ScreenModel& screen, Times& times) {
+std::vector<DepthView> rendered_views(const ProjectorModel& screen, Times& times) {
   const calib::GrayCode code(calib::test::kProjectorWidth_px, calib::test::kProjectorHeight_px);
   std::vector<DepthView> views;
   for (const double depth_m : kDepths_m) {
@@ -68,8 +68,7 @@ void measure_rendered(std::vector<Goal>& goals, Times& times) {
   times.screen_ms.push_back(
       timed_us([&] { full = must(calib::fit_screen(beside, kCamera, kPlane_m)); }) / 1000);
   goals.push_back({"coaxial, one board: largest error over +-100 mm",
-                   worst_px({one.projector_from_camera, glm::dvec3(0), kPlane_m}, kCoaxial), 0.5,
-                   "px"});
+                   worst_px({one.from_camera, glm::dvec3(0), kPlane_m}, kCoaxial), 0.5, "px"});
   goals.push_back({"coaxial, three boards: largest error over +-100 mm",
                    worst_px(three.model, kCoaxial), 0.5, "px"});
   goals.push_back({"150 mm beside, three boards: largest error over +-100 mm",
@@ -145,7 +144,7 @@ std::vector<Goal> measure_goals() {
 
 /// Not a goal: why the parallax is needed.
 void print_coaxial_errors() {
-  const ScreenModel homography{kBeside.projector_from_camera, glm::dvec3(0), kPlane_m};
+  const ProjectorModel homography{kBeside.from_camera, glm::dvec3(0), kPlane_m};
   fmt::print("a coaxial homography for a projector 150 mm beside the camera:\n");
   for (const auto& error : calib::depth_error(
            homography, kBeside, kCamera, std::vector{0.63, 0.68, 0.72, 0.73, 0.74, 0.78, 0.83}))

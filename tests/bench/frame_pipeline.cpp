@@ -18,15 +18,15 @@ calib::Calibration rig_of(const FrameScene& scene) {
   const auto shift = [](glm::dvec2 by) { return glm::dmat3(1, 0, 0, 0, 1, 0, by.x, by.y, 1); };
   const glm::dvec2 more_image(0.5 * (scene.image_width_px - rig.camera.width_px),
                               0.5 * (scene.image_height_px - rig.camera.height_px)),
-      more_screen(0.5 * (scene.screen_width_px - rig.projector_width_px),
-                  0.5 * (scene.screen_height_px - rig.projector_height_px));
+      more_screen(0.5 * (scene.screen_width_px - rig.projector.width_px),
+                  0.5 * (scene.screen_height_px - rig.projector.height_px));
   rig.camera.cx_px += more_image.x;
   rig.camera.cy_px += more_image.y;
   rig.camera.width_px = scene.image_width_px;
   rig.camera.height_px = scene.image_height_px;
-  rig.projector_from_camera = shift(more_screen) * rig.projector_from_camera * shift(-more_image);
-  rig.projector_width_px = scene.screen_width_px;
-  rig.projector_height_px = scene.screen_height_px;
+  rig.projector.from_camera = shift(more_screen) * rig.projector.from_camera * shift(-more_image);
+  rig.projector.width_px = scene.screen_width_px;
+  rig.projector.height_px = scene.screen_height_px;
   return rig;
 }
 

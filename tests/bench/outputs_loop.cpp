@@ -21,7 +21,7 @@ SubFrameTimes draw_sub_frames(const config::Projector& settings, int sub_frames)
       config::has_half_size(settings.packing) ? calib::with_scaled_projector(output, 0.5) : output;
   const auto pipeline = renderer::Pipeline::create({}, {}, {}, calibration);
   const auto packer =
-      renderer::make_packer(settings, output.projector_width_px, output.projector_height_px);
+      renderer::make_packer(settings, output.projector.width_px, output.projector.height_px);
   SubFrameTimes times;
   if (!pipeline) return times;
 

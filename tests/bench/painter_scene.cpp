@@ -19,12 +19,12 @@ constexpr glm::ivec2 kMaskMoved_px{12, 3};
 /// seen from its back, fingers up.
 calib::Calibration rig_of(int width_px, int height_px) {
   calib::Calibration calibration = calib::reference_rig();
-  const double scale_x = static_cast<double>(width_px) / calibration.projector_width_px,
-               scale_y = static_cast<double>(height_px) / calibration.projector_height_px;
-  calibration.projector_from_camera =
-      glm::dmat3(scale_x, 0, 0, 0, scale_y, 0, 0, 0, 1) * calibration.projector_from_camera;
-  calibration.projector_width_px = width_px;
-  calibration.projector_height_px = height_px;
+  const double scale_x = static_cast<double>(width_px) / calibration.projector.width_px,
+               scale_y = static_cast<double>(height_px) / calibration.projector.height_px;
+  calibration.projector.from_camera =
+      glm::dmat3(scale_x, 0, 0, 0, scale_y, 0, 0, 0, 1) * calibration.projector.from_camera;
+  calibration.projector.width_px = width_px;
+  calibration.projector.height_px = height_px;
   calibration.camera_from_tracker =
       glm::dmat4({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0.09, kDistance_m, 1});
   return calibration;

@@ -26,7 +26,7 @@ constexpr int kShifts = 4;  ///< per axis
 /// An image whose pixels are those of `calibration`'s projector, moved by a part of a pixel.
 calib::Calibration shifted(calib::Calibration calibration, glm::dvec2 by_px) {
   const glm::dmat3 shift(1, 0, 0, 0, 1, 0, by_px.x, by_px.y, 1);
-  calibration.projector_from_camera = shift * calibration.projector_from_camera;
+  calibration.projector.from_camera = shift * calibration.projector.from_camera;
   return calibration;
 }
 

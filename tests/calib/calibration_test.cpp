@@ -19,38 +19,45 @@ TEST(Calibration, ToCameraIsTheInverseOfToProjector) {
   const auto rig = reference_rig();
   for (double x : {0.0, 300.5, 1023.0})
     for (double y : {0.0, 200.25, 767.0})
-      EXPECT_LT(glm::distance(rig.to_projector(rig.to_camera({x, y})), {x, y}), 1e-9);
+      EXPECT_LT(
+          glm::distance(rig.projector.pixel_of(rig.projector.camera_pixel_of({x, y})), {x, y}),
+          1e-9);
 }
 
 Calibration rig_with_projector_beside() {
   auto rig = reference_rig();
-  rig.plane_m = 0.7;
-  rig.parallax = -(rig.projector_from_camera * (rig.camera.matrix() * glm::dvec3(0.15, 0.02, 0)));
+  rig.projector.plane_m = 0.7;
+  rig.projector.parallax =
+      -(rig.projector.from_camera * (rig.camera.matrix() * glm::dvec3(0.15, 0.02, 0)));
   return rig;
 }
 
 TEST(Calibration, ACoaxialProjectorLightsAPixelAtEveryDepth) {
   const auto rig = reference_rig();
-  EXPECT_EQ(rig.to_projector({200, 300}, 0.4), rig.to_projector({200, 300}));
+  EXPECT_EQ(rig.projector.pixel_of({200, 300}, 0.4), rig.projector.pixel_of({200, 300}));
 }
 
 TEST(Calibration, AProjectorBesideTheCameraHasTheParallaxOfItsPlace) {
   const auto rig = rig_with_projector_beside();
   const glm::dvec2 px(200, 300);
-  EXPECT_LT(glm::distance(rig.to_projector(px, rig.plane_m), rig.to_projector(px)), 1e-9);
+  EXPECT_LT(
+      glm::distance(rig.projector.pixel_of(px, rig.projector.plane_m), rig.projector.pixel_of(px)),
+      1e-9);
   // Seen from 0.15 m further to the right, a point that is nearer than the plane lies to the left:
   // by 0.15 m times the focal length times the difference of the inverse depths.
   const double shift_px = 0.15 * rig.camera.fx_px * (1 / 0.5 - 1 / 0.7);
-  EXPECT_NEAR(rig.to_camera(rig.to_projector(px, 0.5)).x, px.x - shift_px, 0.5);
+  EXPECT_NEAR(rig.projector.camera_pixel_of(rig.projector.pixel_of(px, 0.5)).x, px.x - shift_px,
+              0.5);
 }
 
 TEST(Calibration, ItsProjectionAndHomographiesAgree) {
   const auto rig = rig_with_projector_beside();
   const glm::dvec3 point_m(0.05, -0.08, 0.55);
-  const auto expected = rig.to_projector(rig.camera.project(point_m), point_m.z);
+  const auto expected = rig.projector.pixel_of(rig.camera.project(point_m), point_m.z);
   const auto projected = rig.projection() * glm::dvec4(point_m, 1);
   EXPECT_LT(glm::distance(glm::dvec2(projected) / projected.z, expected), 1e-9);
-  const auto mapped = rig.homography_at(point_m.z) * glm::dvec3(rig.camera.project(point_m), 1);
+  const auto mapped =
+      rig.projector.homography_at(point_m.z) * glm::dvec3(rig.camera.project(point_m), 1);
   EXPECT_LT(glm::distance(glm::dvec2(mapped) / mapped.z, expected), 1e-9);
 }
 
@@ -64,22 +71,22 @@ TEST(CalibrationFile, ReadsBackAsItWasPrinted) {
   auto rig = reference_rig();
   rig.camera.fx_px = 1000.0 / 3;
   rig.camera.width_px = 640;
-  rig.projector_height_px = 800;
+  rig.projector.height_px = 800;
   const auto back = load_calibration(file_with(print_calibration(rig)));
   ASSERT_TRUE(back) << back.error().what;
   EXPECT_EQ(back->camera.fx_px, rig.camera.fx_px);
   EXPECT_EQ(back->camera.k3, rig.camera.k3);
   EXPECT_EQ(back->camera.width_px, 640);
-  EXPECT_EQ(back->projector_height_px, 800);
+  EXPECT_EQ(back->projector.height_px, 800);
   EXPECT_LT(largest_difference(back->camera_from_tracker, rig.camera_from_tracker), 1e-15);
-  EXPECT_EQ(back->projector_from_camera, rig.projector_from_camera);
+  EXPECT_EQ(back->projector.from_camera, rig.projector.from_camera);
 }
 
 TEST(CalibrationFile, AZeroHasNoSign) {
   auto rig = reference_rig();
   rig.camera.k1 = -0.0;
   rig.camera_from_tracker = glm::dmat4(-0.0);
-  rig.parallax = glm::dvec3(-0.0);
+  rig.projector.parallax = glm::dvec3(-0.0);
   const auto text = print_calibration(rig);
   EXPECT_EQ(text.find("-0,"), std::string::npos) << text;
   EXPECT_EQ(text.find("-0]"), std::string::npos) << text;
@@ -99,8 +106,8 @@ TEST(CalibrationFile, KeepsTheProjectorsPlace) {
   const auto rig = rig_with_projector_beside();
   const auto back = load_calibration(file_with(print_calibration(rig)));
   ASSERT_TRUE(back) << back.error().what;
-  EXPECT_EQ(back->parallax, rig.parallax);
-  EXPECT_EQ(back->plane_m, rig.plane_m);
+  EXPECT_EQ(back->projector.parallax, rig.projector.parallax);
+  EXPECT_EQ(back->projector.plane_m, rig.projector.plane_m);
 }
 
 TEST(CalibrationFile, SaysHowItWasMadeWithoutBecomingAnotherCalibration) {

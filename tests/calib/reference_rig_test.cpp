@@ -87,16 +87,16 @@ TEST(ReferenceRig, SeesTheHandsPlaceInTheMiddleOfTheImage) {
 
 TEST(ReferenceRig, CoversTheProjectorsPictureWithTheCamerasToTwoPercent) {
   const auto rig = reference_rig();
-  const glm::dvec2 last(rig.projector_width_px - 1, rig.projector_height_px - 1);
-  EXPECT_LT(glm::distance(rig.to_projector({359.5, 269.5}), last / 2.0), 1e-9);
-  EXPECT_LT(glm::distance(rig.to_projector({-0.1, -0.1}), {0, 0}), 10);
-  EXPECT_LT(glm::distance(rig.to_projector({719, 539}), last), 10);
+  const glm::dvec2 last(rig.projector.width_px - 1, rig.projector.height_px - 1);
+  EXPECT_LT(glm::distance(rig.projector.pixel_of({359.5, 269.5}), last / 2.0), 1e-9);
+  EXPECT_LT(glm::distance(rig.projector.pixel_of({-0.1, -0.1}), {0, 0}), 10);
+  EXPECT_LT(glm::distance(rig.projector.pixel_of({719, 539}), last), 10);
 }
 
 TEST(ReferenceRig, HasATrueHomography) {
   const auto rig = reference_rig();
-  const auto left = rig.to_projector({0, 269}), middle = rig.to_projector({359, 269}),
-             right = rig.to_projector({718, 269});
+  const auto left = rig.projector.pixel_of({0, 269}), middle = rig.projector.pixel_of({359, 269}),
+             right = rig.projector.pixel_of({718, 269});
   EXPECT_GT(std::abs(glm::distance(left, middle) - glm::distance(middle, right)), 0.5)
       << "no keystone";
   EXPECT_GT(std::abs(right.y - left.y), 3) << "not turned";

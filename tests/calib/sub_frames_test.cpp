@@ -15,13 +15,13 @@ using config::Packing;
 TEST(SubFrames, AQuarterOfTheOutputShowsTheWholeScene) {
   const auto output = *load_calibration({});
   const auto quarter = *load_calibration({}, Packing::quadrants_4);
-  EXPECT_EQ(quarter.projector_width_px, output.projector_width_px / 2);
-  EXPECT_EQ(quarter.projector_height_px, output.projector_height_px / 2);
+  EXPECT_EQ(quarter.projector.width_px, output.projector.width_px / 2);
+  EXPECT_EQ(quarter.projector.height_px, output.projector.height_px / 2);
   for (const glm::dvec2 camera_px :
        {glm::dvec2(0, 0), glm::dvec2(300, 200), glm::dvec2(719, 539)}) {
     // Measured from the corner of the image, which is half a pixel from the centre of the first.
-    const auto whole = output.to_projector(camera_px) + 0.5,
-               half = quarter.to_projector(camera_px) + 0.5;
+    const auto whole = output.projector.pixel_of(camera_px) + 0.5,
+               half = quarter.projector.pixel_of(camera_px) + 0.5;
     EXPECT_NEAR(half.x, whole.x / 2, 1e-9);
     EXPECT_NEAR(half.y, whole.y / 2, 1e-9);
   }
@@ -29,15 +29,16 @@ TEST(SubFrames, AQuarterOfTheOutputShowsTheWholeScene) {
 
 TEST(SubFrames, BitPlanesHaveTheSizeOfTheOutput) {
   for (const auto packing : {Packing::none, Packing::planes_24x1, Packing::planes_8x3})
-    EXPECT_EQ(load_calibration({}, packing)->projector_width_px, 1024);
+    EXPECT_EQ(load_calibration({}, packing)->projector.width_px, 1024);
 }
 
 TEST(SubFrames, TheOutputIsWhatTheCalibrationFileSays) {
   for (const auto packing : {Packing::planes_24x1, Packing::quadrants_12}) {
     const auto output = output_of(*load_calibration({}, packing), packing);
     const auto file = *load_calibration({});
-    EXPECT_EQ(output.projector_width_px, file.projector_width_px);
-    const auto at = output.to_projector({100, 200}), expected = file.to_projector({100, 200});
+    EXPECT_EQ(output.projector.width_px, file.projector.width_px);
+    const auto at = output.projector.pixel_of({100, 200}),
+               expected = file.projector.pixel_of({100, 200});
     EXPECT_NEAR(at.x, expected.x, 1e-9);
     EXPECT_NEAR(at.y, expected.y, 1e-9);
   }
@@ -50,7 +51,7 @@ TEST(SubFrames, HaveTheIdOfTheirCalibration) {
 TEST(SubFrames, AnOutputThatCannotBeHalvedIsRefused) {
   test::Scratch scratch;
   auto odd = reference_rig();
-  odd.projector_height_px = 767;
+  odd.projector.height_px = 767;
   const auto file = scratch.path() / "odd.toml";
   ASSERT_TRUE(write_whole(file, print_calibration(odd)));
   EXPECT_TRUE(load_calibration(file, Packing::planes_24x1));

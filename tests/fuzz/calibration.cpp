@@ -11,13 +11,14 @@ namespace {
 
 void use(const handcast::calib::Calibration& calibration) {
   using handcast::fuzz::require;
-  const glm::dvec2 last(calibration.projector_width_px - 1, calibration.projector_height_px - 1);
+  const glm::dvec2 last(calibration.projector.width_px - 1, calibration.projector.height_px - 1);
   for (int i = 0; i < 25; ++i) {
-    const auto camera_px = calibration.to_camera(last * glm::dvec2(i % 5, i / 5) / 4.0);
+    const auto camera_px =
+        calibration.projector.camera_pixel_of(last * glm::dvec2(i % 5, i / 5) / 4.0);
     require(std::isfinite(camera_px.x) && std::isfinite(camera_px.y));
     const auto lens_px = calibration.camera.distort(camera_px);
     calibration.camera.undistort(lens_px);
-    const auto back_px = calibration.to_projector(camera_px);
+    const auto back_px = calibration.projector.pixel_of(camera_px);
     require(std::isfinite(back_px.x) && std::isfinite(back_px.y));
   }
   require(std::isfinite(calibration.mm_per_projector_px(1)));

@@ -36,7 +36,7 @@ msg::Owned<msg::Projection> draw(const HandMesh& mesh, const twin::Twin& twin,
   renderer::LandmarkPoints p{}, q{};
   const auto seen = *twin.landmarks(msg::Side::left, kTime_ns);
   for (std::size_t i = 0; i < p.size(); ++i) {
-    p[i] = calibration.to_projector(seen[i]);
+    p[i] = calibration.projector.pixel_of(seen[i]);
     q[i] = p[i] + glm::vec2(i % 4 == 0 ? -20 : 20, static_cast<float>(i));
   }
   renderer::correct_vertices(cascade.correct, surface.mesh(), p, q, skinned.projected_px);

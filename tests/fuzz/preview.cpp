@@ -32,10 +32,10 @@ preview::World small_world() {
   for (double* length :
        {&rig.camera.fx_px, &rig.camera.fy_px, &rig.camera.cx_px, &rig.camera.cy_px})
     *length *= kScale;
-  rig.projector_width_px = 128, rig.projector_height_px = 96;
+  rig.projector.width_px = 128, rig.projector.height_px = 96;
   const glm::dmat3 smaller(kScale, 0, 0, 0, kScale, 0, 0, 0, 1),
       larger(1 / kScale, 0, 0, 0, 1 / kScale, 0, 0, 0, 1);
-  rig.projector_from_camera = smaller * rig.projector_from_camera * larger;
+  rig.projector.from_camera = smaller * rig.projector.from_camera * larger;
   for (auto& mesh : world.hands) {
     mesh.positions.resize(4);
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};

@@ -57,7 +57,7 @@ TEST_F(AlignByHand, MouseAndArrowKeysMoveTheCornersOfTheHomographyThatIsWritten)
       << "the window is drawn, so the mouse is listened to";
 
   // The window has half of the projector's size.
-  const auto top_right = truth_.to_projector(corners_px()[1]);
+  const auto top_right = truth_.projector.pixel_of(corners_px()[1]);
   const glm::ivec2 from(top_right / 2.0), to = from + glm::ivec2(-20, 15);
   test::drag_in_window(from.x, from.y, to.x, to.y, kWindow);
   ASSERT_TRUE(terminal.says("corner 2 (top right)")) << terminal.said();
@@ -72,7 +72,7 @@ TEST_F(AlignByHand, MouseAndArrowKeysMoveTheCornersOfTheHomographyThatIsWritten)
   const std::array<glm::dvec2, 4> moved_px{{{0, 0}, {-40, 30}, {10, -5}, {0, 0}}};
   for (std::size_t i = 0; i < moved_px.size(); ++i) {
     const auto px = corners_px()[i];
-    const auto off = found->to_projector(px) - truth_.to_projector(px) - moved_px[i];
+    const auto off = found->projector.pixel_of(px) - truth_.projector.pixel_of(px) - moved_px[i];
     EXPECT_LT(glm::length(off), 1e-3) << "corner " << i + 1;
   }
 }

@@ -84,7 +84,7 @@ TEST_F(Calibrate, TheTwinsLensIsFoundAndWrittenAsACalibration) {
 TEST_F(Calibrate, TheTwinsProjectorIsFoundByStructuredLight) {
   // 50 mm beside the camera, which the rig does not know.
   auto truth = calib::reference_rig();
-  truth.parallax = {82, 0, 0};
+  truth.projector.parallax = {82, 0, 0};
   const auto file = (scratch_.path() / "truth.toml").string();
   std::ofstream(file) << calib::print_calibration(truth);
   const auto outcome = calibrate(
@@ -97,7 +97,9 @@ TEST_F(Calibrate, TheTwinsProjectorIsFoundByStructuredLight) {
   ASSERT_TRUE(found) << found.error().what;
   for (const double depth_m : {0.65, 0.8})
     for (const glm::dvec2 px : {glm::dvec2(180, 135), {540, 135}, {180, 405}, {540, 405}})
-      EXPECT_LT(glm::distance(found->to_projector(px, depth_m), truth.to_projector(px, depth_m)), 1)
+      EXPECT_LT(glm::distance(found->projector.pixel_of(px, depth_m),
+                              truth.projector.pixel_of(px, depth_m)),
+                1)
           << px.x << " " << px.y << " at " << depth_m << " m";
 }
 

@@ -7,7 +7,7 @@
 
 namespace handcast::calib {
 
-ErrorVolume error_volume(const ScreenModel& believed, const ScreenModel& truth,
+ErrorVolume error_volume(const ProjectorModel& believed, const ProjectorModel& truth,
                          const CameraModel& camera, std::span<const double> depths_m, int columns,
                          int rows) {
   ErrorVolume volume{columns, rows, {depths_m.begin(), depths_m.end()}, {}};
@@ -17,18 +17,18 @@ ErrorVolume error_volume(const ScreenModel& believed, const ScreenModel& truth,
       for (int column = 0; column < columns; ++column) {
         const auto px = last * glm::dvec2(column, row) / glm::dvec2(columns - 1, rows - 1);
         volume.error_px.push_back(
-            glm::distance(believed.to_projector(px, depth_m), truth.to_projector(px, depth_m)));
+            glm::distance(believed.pixel_of(px, depth_m), truth.pixel_of(px, depth_m)));
       }
   return volume;
 }
 
-ErrorVolume coaxial_error(const ScreenModel& model, const CameraModel& camera,
+ErrorVolume coaxial_error(const ProjectorModel& model, const CameraModel& camera,
                           std::span<const double> depths_m, int columns, int rows) {
-  return error_volume({model.projector_from_camera, glm::dvec3(0), model.plane_m}, model, camera,
-                      depths_m, columns, rows);
+  return error_volume({model.from_camera, glm::dvec3(0), model.plane_m}, model, camera, depths_m,
+                      columns, rows);
 }
 
-std::vector<DepthError> depth_error(const ScreenModel& believed, const ScreenModel& truth,
+std::vector<DepthError> depth_error(const ProjectorModel& believed, const ProjectorModel& truth,
                                     const CameraModel& camera, std::span<const double> depths_m) {
   std::vector<DepthError> errors;
   for (const double depth_m : depths_m) {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "calib/solve/screen/screen_model.hpp"
+#include "calib/projector_model.hpp"
 
 namespace handcast::calib {
 
@@ -20,13 +20,13 @@ struct ErrorVolume {
                     static_cast<std::size_t>(column)];
   }
 };
-ErrorVolume error_volume(const ScreenModel& believed, const ScreenModel& truth,
+ErrorVolume error_volume(const ProjectorModel& believed, const ProjectorModel& truth,
                          const CameraModel& camera, std::span<const double> depths_m,
                          int columns = 24, int rows = 18);
 
 /// The errors of the coaxial homography of a model, which holds at its plane_m and is used at all
 /// depths.
-ErrorVolume coaxial_error(const ScreenModel& model, const CameraModel& camera,
+ErrorVolume coaxial_error(const ProjectorModel& model, const CameraModel& camera,
                           std::span<const double> depths_m, int columns = 24, int rows = 18);
 
 /// An ErrorVolume at one depth.
@@ -35,7 +35,7 @@ struct DepthError {
   double median_px = 0, largest_px = 0;
 };
 /// One for each depth, over the camera's image.
-std::vector<DepthError> depth_error(const ScreenModel& believed, const ScreenModel& truth,
+std::vector<DepthError> depth_error(const ProjectorModel& believed, const ProjectorModel& truth,
                                     const CameraModel& camera, std::span<const double> depths_m);
 
 }  // namespace handcast::calib

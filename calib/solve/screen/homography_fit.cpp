@@ -66,7 +66,7 @@ Result<HomographyFit> fit_homography(std::span<const Correspondence> points,
   if (!found) return tl::make_unexpected(found.error());
   const Replicas replicas(found->model, found->inliers, Unknowns::homography, kImageBlocks);
   HomographyFit fit;
-  fit.projector_from_camera = found->model.projector_from_camera;
+  fit.projector_from_camera = found->model.from_camera;
   fit.inlier_share = found->share;
   fit.residual = errors_of(found->model, found->inliers);
   fit.held_out = errors_of(held_out_by_blocks(replicas, found->inliers, 1));

@@ -54,12 +54,12 @@ std::vector<Observation> observations_of(std::span<const Correspondence> points,
 }
 
 /// The best of the homographies through four points each.
-ScreenModel best_sample(std::span<const Observation> all, double plane_m) {
+ProjectorModel best_sample(std::span<const Observation> all, double plane_m) {
   std::mt19937 random(1);  // the same data give the same result
   std::vector<Observation> scored(all.begin(), all.end());
   std::ranges::shuffle(scored, random);
   scored.resize(std::min(scored.size(), kScoredPoints));
-  ScreenModel best{glm::dmat3(1), glm::dvec3(0), plane_m};
+  ProjectorModel best{glm::dmat3(1), glm::dvec3(0), plane_m};
   std::ptrdiff_t most = -1;
   for (int sample = 0; sample < kTries; ++sample) {
     std::array<glm::dvec2, 4> from, to;
@@ -68,8 +68,8 @@ ScreenModel best_sample(std::span<const Observation> all, double plane_m) {
       from[i] = point.camera_px;
       to[i] = point.projector_px;
     }
-    const ScreenModel model{homography_of_corners(from, to), glm::dvec3(0), plane_m};
-    if (!is_finite(model.projector_from_camera)) continue;
+    const ProjectorModel model{homography_of_corners(from, to), glm::dvec3(0), plane_m};
+    if (!is_finite(model.from_camera)) continue;
     const auto agree = std::ranges::count_if(
         scored, [&](const auto& point) { return residual_px(model, point) < kAgree_px; });
     if (agree > most) {
@@ -81,7 +81,7 @@ ScreenModel best_sample(std::span<const Observation> all, double plane_m) {
 }
 
 /// Residuals in standard deviations; the median tells by how much the stated ones are too small.
-std::vector<Observation> inliers_of(const ScreenModel& model, std::span<const Observation> all) {
+std::vector<Observation> inliers_of(const ProjectorModel& model, std::span<const Observation> all) {
   std::vector<double> agreeing;
   for (const auto& point : all)
     if (const double off_px = residual_px(model, point); off_px < kAgree_px)
@@ -156,7 +156,7 @@ Result<PlaneConsensus> plane_consensus(std::span<const Correspondence> points,
     if (spread_px(found.inliers) < kLeastSpread_px) return on_a_line();
     found.model = refined(found.model, found.inliers, Unknowns::homography);
   }
-  if (!is_finite(found.model.projector_from_camera)) return on_a_line();
+  if (!is_finite(found.model.from_camera)) return on_a_line();
   return found;
 }
 

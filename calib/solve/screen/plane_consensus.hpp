@@ -22,7 +22,7 @@ int block_of(const glm::dvec2& px, const glm::dvec2& first_px, const glm::dvec2&
 
 /// The points of one plane that agree with each other.
 struct PlaneConsensus {
-  ScreenModel model;                 ///< a homography, fitted to the inliers
+  ProjectorModel model;              ///< a homography, fitted to the inliers
   std::vector<Observation> inliers;  ///< blocks: of the area that the points fill
   double share = 0;                  ///< of all points
 };

@@ -46,8 +46,8 @@ Scaling scaling_of(std::span<const Observation> observations, double plane_m) {
 }
 
 /// Rows of the homography without its last element, which is 1, and the parallax.
-Vector unknowns_of(const ScreenModel& model, const Scaling& scaling) {
-  auto homography = scaling.projector * model.projector_from_camera * glm::inverse(scaling.camera);
+Vector unknowns_of(const ProjectorModel& model, const Scaling& scaling) {
+  auto homography = scaling.projector * model.from_camera * glm::inverse(scaling.camera);
   auto parallax = scaling.projector * model.parallax / scaling.inverse_depth;
   parallax /= homography[2][2];
   homography /= homography[2][2];
@@ -57,13 +57,13 @@ Vector unknowns_of(const ScreenModel& model, const Scaling& scaling) {
   return unknowns;
 }
 
-ScreenModel model_of(const Vector& unknowns, const Scaling& scaling, double plane_m) {
+ProjectorModel model_of(const Vector& unknowns, const Scaling& scaling, double plane_m) {
   glm::dmat3 homography(1);
   for (int i = 0; i < 8; ++i) homography[i % 3][i / 3] = unknowns[i];
   const glm::dvec3 parallax(unknowns[8], unknowns[9], unknowns[10]);
   const auto back = glm::inverse(scaling.projector);
-  return ScreenModel{back * homography * scaling.camera, back * parallax * scaling.inverse_depth,
-                     plane_m}
+  return ProjectorModel{back * homography * scaling.camera, back * parallax * scaling.inverse_depth,
+                        plane_m}
       .normalised();
 }
 
@@ -126,19 +126,19 @@ std::optional<Vector> solved(const Normal& normal, const Vector& right, int coun
   return step;
 }
 
-ScreenModel undetermined(double plane_m) {
+ProjectorModel undetermined(double plane_m) {
   return {glm::dmat3(std::nan("")), glm::dvec3(std::nan("")), plane_m};
 }
 
 }  // namespace
 
-double residual_px(const ScreenModel& model, const Observation& observation) {
-  return glm::distance(model.to_projector(observation.camera_px, 1 / observation.inverse_depth),
+double residual_px(const ProjectorModel& model, const Observation& observation) {
+  return glm::distance(model.pixel_of(observation.camera_px, 1 / observation.inverse_depth),
                        observation.projector_px);
 }
 
-ScreenModel refined(const ScreenModel& start, std::span<const Observation> observations,
-                    Unknowns unknowns) {
+ProjectorModel refined(const ProjectorModel& start, std::span<const Observation> observations,
+                       Unknowns unknowns) {
   const int count = static_cast<int>(unknowns);
   const auto scaling = scaling_of(observations, start.plane_m);
   Vector best = unknowns_of(start, scaling);
@@ -171,7 +171,7 @@ ScreenModel refined(const ScreenModel& start, std::span<const Observation> obser
   return model_of(best, scaling, start.plane_m);
 }
 
-Replicas::Replicas(const ScreenModel& best, std::span<const Observation> observations,
+Replicas::Replicas(const ProjectorModel& best, std::span<const Observation> observations,
                    Unknowns unknowns, int blocks)
     : best_(best),
       unknowns_(unknowns),
@@ -185,7 +185,7 @@ Replicas::Replicas(const ScreenModel& best, std::span<const Observation> observa
   }
 }
 
-std::optional<ScreenModel> Replicas::with_weights(std::span<const double> weights) const {
+std::optional<ProjectorModel> Replicas::with_weights(std::span<const double> weights) const {
   Normal normal = Normal::Zero();
   Vector right = Vector::Zero();
   for (std::size_t i = 0; i < blocks_.size(); ++i) {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "calib/projector_model.hpp"
 #include "calib/solve/screen/correspondence.hpp"
-#include "calib/solve/screen/screen_model.hpp"
 
-/// Least squares for ScreenModel, which the fits of this folder share.
+/// Least squares for ProjectorModel, which the fits of this folder share.
 namespace handcast::calib {
 
 /// A correspondence, ready for a fit.
@@ -27,13 +27,13 @@ enum class Unknowns {
 };
 
 /// Projector px by which the model misses an observation.
-double residual_px(const ScreenModel& model, const Observation& observation);
+double residual_px(const ProjectorModel& model, const Observation& observation);
 
 /// Levenberg-Marquardt on the residuals in standard deviations. `start` may be far off, but its
 /// homography must be finite and of the right orientation. The result is not finite if the
 /// observations do not determine the unknowns.
-ScreenModel refined(const ScreenModel& start, std::span<const Observation> observations,
-                    Unknowns unknowns);
+ProjectorModel refined(const ProjectorModel& start, std::span<const Observation> observations,
+                       Unknowns unknowns);
 
 /// The fits that other weights of the blocks would give: one Gauss-Newton step from the fit to all
 /// of them. A step is exact up to the curvature of the model, which is small next to the noise, and
@@ -41,10 +41,10 @@ ScreenModel refined(const ScreenModel& start, std::span<const Observation> obser
 class Replicas {
  public:
   /// `blocks`: one more than the highest block of the observations.
-  Replicas(const ScreenModel& best, std::span<const Observation> observations, Unknowns unknowns,
+  Replicas(const ProjectorModel& best, std::span<const Observation> observations, Unknowns unknowns,
            int blocks);
   /// Nothing if these blocks do not determine the model. `weights`: one for each block.
-  std::optional<ScreenModel> with_weights(std::span<const double> weights) const;
+  std::optional<ProjectorModel> with_weights(std::span<const double> weights) const;
 
   /// Normal equations of the observations of a block.
   struct Sums {
@@ -58,7 +58,7 @@ class Replicas {
   };
 
  private:
-  ScreenModel best_;
+  ProjectorModel best_;
   Unknowns unknowns_;
   Scaling scaling_;
   std::vector<Sums> blocks_;

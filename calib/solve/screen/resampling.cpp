@@ -38,7 +38,7 @@ ErrorsPx errors_of(const std::vector<double>& residuals_px) {
   return {median(residuals_px), quantile(residuals_px, 0.95)};
 }
 
-ErrorsPx errors_of(const ScreenModel& model, std::span<const Observation> observations) {
+ErrorsPx errors_of(const ProjectorModel& model, std::span<const Observation> observations) {
   std::vector<double> residuals_px;
   for (const auto& observation : observations)
     residuals_px.push_back(residual_px(model, observation));
@@ -61,9 +61,9 @@ std::vector<double> held_out_by_blocks(const Replicas& replicas,
   return residuals_px;
 }
 
-std::array<glm::dvec2, 4> corners_in_camera(const ScreenModel& model,
+std::array<glm::dvec2, 4> corners_in_camera(const ProjectorModel& model,
                                             const glm::ivec2& projector_px) {
-  const auto back = glm::inverse(model.projector_from_camera);
+  const auto back = glm::inverse(model.from_camera);
   const glm::dvec2 last = projector_px - 1;
   return {mapped(back, {0, 0}), mapped(back, {last.x, 0}), mapped(back, last),
           mapped(back, {0, last.y})};
@@ -87,7 +87,7 @@ Bootstrap::Bootstrap(const Replicas& replicas, std::span<const Observation> obse
   }
 }
 
-double Bootstrap::interval(const std::function<double(const ScreenModel&)>& value) const {
+double Bootstrap::interval(const std::function<double(const ProjectorModel&)>& value) const {
   const auto count = static_cast<double>(models_.size());
   if (count < 2) return std::numeric_limits<double>::infinity();
   std::vector<double> values;
@@ -102,7 +102,7 @@ std::array<glm::dvec2, 4> Bootstrap::corner_intervals(const glm::ivec2& projecto
   std::array<glm::dvec2, 4> intervals;
   for (std::size_t corner = 0; corner < 4; ++corner)
     for (int axis = 0; axis < 2; ++axis)
-      intervals[corner][axis] = interval([&](const ScreenModel& model) {
+      intervals[corner][axis] = interval([&](const ProjectorModel& model) {
         return corners_in_camera(model, projector_px)[corner][axis];
       });
   return intervals;

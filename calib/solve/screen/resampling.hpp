@@ -12,7 +12,7 @@
 namespace handcast::calib {
 
 /// The errors of a model on observations.
-ErrorsPx errors_of(const ScreenModel& model, std::span<const Observation> observations);
+ErrorsPx errors_of(const ProjectorModel& model, std::span<const Observation> observations);
 ErrorsPx errors_of(const std::vector<double>& residuals_px);
 
 /// The residuals of the observations by fits without their parts of the image: the parts are dealt
@@ -23,7 +23,7 @@ std::vector<double> held_out_by_blocks(const Replicas& replicas,
 
 /// The corners of the projector's picture in the camera's undistorted pixels, clockwise from the
 /// top left, by the homography that holds at plane_m.
-std::array<glm::dvec2, 4> corners_in_camera(const ScreenModel& model,
+std::array<glm::dvec2, 4> corners_in_camera(const ProjectorModel& model,
                                             const glm::ivec2& projector_px);
 
 /// Models of 200 bootstrap samples of the blocks that hold observations, and, from five views on,
@@ -35,12 +35,12 @@ class Bootstrap {
   /// Half the width of the 95 % interval of a function of the model: 1.96 standard deviations of
   /// its replicates. They are widened by the square root of blocks / (blocks - unknowns), since the
   /// fit follows the errors of its own blocks.
-  double interval(const std::function<double(const ScreenModel&)>& value) const;
+  double interval(const std::function<double(const ProjectorModel&)>& value) const;
   /// interval() of each coordinate of the four corners_in_camera().
   std::array<glm::dvec2, 4> corner_intervals(const glm::ivec2& projector_px) const;
 
  private:
-  std::vector<ScreenModel> models_;
+  std::vector<ProjectorModel> models_;
   double widening_ = 1;
 };
 

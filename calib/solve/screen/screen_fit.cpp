@@ -22,7 +22,7 @@ constexpr double kMuchWorse = 3, kMuchWorse_px = 0.3;
 /// The inliers of all views.
 struct Inliers {
   std::vector<Observation> observations;  ///< block: view * kImageBlocks + part of the image
-  ScreenModel start;                      ///< the homography of the first view
+  ProjectorModel start;                   ///< the homography of the first view
   std::size_t points = 0;                 ///< with those that are no inliers
 
   std::vector<Observation> of_view(int view, bool other_views = false) const {
@@ -83,7 +83,7 @@ struct HeldOut {
   std::vector<double> coaxial_px, full_px;
 };
 
-void append(std::vector<double>& residuals_px, const ScreenModel& model,
+void append(std::vector<double>& residuals_px, const ProjectorModel& model,
             std::span<const Observation> observations) {
   for (const auto& observation : observations)
     residuals_px.push_back(residual_px(model, observation));
@@ -91,7 +91,7 @@ void append(std::vector<double>& residuals_px, const ScreenModel& model,
 
 /// Views without which the parallax is not observable cannot be held out.
 HeldOut held_out_by_views(const Inliers& inliers, int views, const CameraModel& camera,
-                          const ScreenModel& full) {
+                          const ProjectorModel& full) {
   HeldOut errors;
   for (int view = 0; view < views; ++view) {
     const auto others = inliers.of_view(view, true), here = inliers.of_view(view);
@@ -120,7 +120,7 @@ class Choice {
   void choose(ScreenFit& fit) const;
   void add_intervals(ScreenFit& fit, const glm::ivec2& projector_px) const;
   void add_findings(ScreenFit& fit) const;
-  ErrorsPx by_blocks(const ScreenModel& model, Unknowns unknowns) const {
+  ErrorsPx by_blocks(const ProjectorModel& model, Unknowns unknowns) const {
     const Replicas replicas(model, inliers_.observations, unknowns, views_ * kImageBlocks);
     return errors_of(held_out_by_blocks(replicas, inliers_.observations, views_));
   }
@@ -159,10 +159,10 @@ void Choice::add_intervals(ScreenFit& fit, const glm::ivec2& projector_px) const
   fit.corners_px = corners_in_camera(fit.model, projector_px);
   fit.corner_interval_px = samples.corner_intervals(projector_px);
   if (fit.coaxial) return;
-  const auto length_mm = [this](const ScreenModel& model) {
-    return 1000 * glm::length(model.projector_centre_m(camera_));
+  const auto length_mm = [this](const ProjectorModel& model) {
+    return 1000 * glm::length(model.centre_m(camera_));
   };
-  const Baseline baseline{1000. * fit.model.projector_centre_m(camera_), length_mm(fit.model),
+  const Baseline baseline{1000. * fit.model.centre_m(camera_), length_mm(fit.model),
                           samples.interval(length_mm)};
   if (baseline.interval_mm < baseline.length_mm) fit.baseline = baseline;
 }

@@ -25,7 +25,7 @@ struct Baseline {
 
 /// A projector, fitted to boards at several depths.
 struct ScreenFit {
-  ScreenModel model;
+  ProjectorModel model;
   bool coaxial = true;               ///< parallax is 0: it is, or it was not observable
   bool parallax_observable = false;  ///< the boards differ enough in depth
   double inlier_share = 0;           ///< of all points
@@ -44,7 +44,7 @@ struct ScreenFit {
   std::vector<std::string> findings;  ///< sentences for a person: what makes the fit doubtful
 };
 
-/// Fits a ScreenModel: the depth of each point is that of its board, the inliers are those of
+/// Fits a ProjectorModel: the depth of each point is that of its board, the inliers are those of
 /// plane_consensus() in each view. `plane_m`: greater than 0. The model is coaxial (8 unknowns)
 /// unless the full one (11) predicts what was held out better by 10 %. Two boards determine it
 /// unless they are almost in the same plane; one board, also a tilted one, does not. Intervals come

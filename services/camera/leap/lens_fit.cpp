@@ -186,10 +186,10 @@ Result<std::string> calibration_file_of(const ControllerCalibration& calibration
   file.camera = lens->camera;
   file.camera2 = {serial, other->camera, is_left ? from_left : glm::inverse(from_left)};
   file.camera_from_tracker = glm::dmat4(1);
-  file.projector_from_camera =
-      glm::dmat3(file.projector_width_px / static_cast<double>(width_px), 0, 0, 0,
-                 file.projector_height_px / static_cast<double>(height_px), 0, 0, 0, 1);
-  file.parallax = glm::dvec3(0);
+  file.projector.from_camera =
+      glm::dmat3(file.projector.width_px / static_cast<double>(width_px), 0, 0, 0,
+                 file.projector.height_px / static_cast<double>(height_px), 0, 0, 0, 1);
+  file.projector.parallax = glm::dvec3(0);
   file.made = {.lens = fmt::format("the {} eye's, from the controller's memory; this model is "
                                    "{:.2f} px off (worst {:.2f}, inner half {:.2f})",
                                    is_left ? "left" : "right", lens->rms_px, lens->worst_px,

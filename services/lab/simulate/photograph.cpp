@@ -51,9 +51,9 @@ Rect bounds_of(const std::vector<glm::vec2>& points) {
 
 Photographer::Photographer(const twin::Twin& twin, const calib::Calibration& calibration)
     : twin_(twin),
-      painter_(renderer::make_cpu_painter(calibration.projector_width_px,
-                                          calibration.projector_height_px)),
-      picture_(calibration.projector_width_px, calibration.projector_height_px) {}
+      painter_(renderer::make_cpu_painter(calibration.projector.width_px,
+                                          calibration.projector.height_px)),
+      picture_(calibration.projector.width_px, calibration.projector.height_px) {}
 
 void Photographer::pose(const twin::TrueHand& hand, const twin::JointFrames& joints,
                         Surface& surface) const {

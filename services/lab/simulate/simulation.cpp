@@ -74,7 +74,7 @@ Simulation::Simulation(const config::Rig& rig, const calib::Calibration& calibra
       looks_(draw_every > 0 && pipeline.looks()),
       image_(calibration.camera.width_px, calibration.camera.height_px),
       projection_(
-          msg::Projection::bytes(calibration.projector_width_px, calibration.projector_height_px)) {
+          msg::Projection::bytes(calibration.projector.width_px, calibration.projector.height_px)) {
   pipeline_.show_surface(true);
 }
 

@@ -281,7 +281,7 @@ class RigJudge final : public Judge {
 
 std::unique_ptr<Judge> Judge::create(const Twin& twin, int step_px) {
   const auto& rig = twin.geometry().calibration();
-  return std::make_unique<RigJudge>(twin, rig.projector_width_px, rig.projector_height_px, step_px);
+  return std::make_unique<RigJudge>(twin, rig.projector.width_px, rig.projector.height_px, step_px);
 }
 
 }  // namespace handcast::twin

@@ -19,7 +19,7 @@ glm::dvec3 direction(const Random& random, std::uint64_t draw) {
 
 /// Moves the corners of the projector's image by `rms_px` per corner.
 glm::dmat3 corner_error(const calib::Calibration& rig, double rms_px, const Random& random) {
-  const double w = rig.projector_width_px, h = rig.projector_height_px;
+  const double w = rig.projector.width_px, h = rig.projector.height_px;
   const std::array<glm::dvec2, 4> corners{{{0, 0}, {w, 0}, {w, h}, {0, h}}};
   auto moved = corners;
   for (std::uint64_t i = 0; i < 4; ++i)
@@ -53,18 +53,18 @@ TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
   const double angle = std::numbers::pi * random.spread(10);
   const auto centre_m =
       settings.projector_offset_mm * 1e-3 * glm::dvec3(std::cos(angle), std::sin(angle), 0);
-  true_.plane_m += settings.plane_mm * 1e-3;
+  true_.projector.plane_m += settings.plane_mm * 1e-3;
   if (settings.homography_px > 0)
-    true_.projector_from_camera =
-        corner_error(base, settings.homography_px, random) * base.projector_from_camera;
-  true_.parallax -= true_.projector_from_camera * (true_.camera.matrix() * centre_m);
+    true_.projector.from_camera =
+        corner_error(base, settings.homography_px, random) * base.projector.from_camera;
+  true_.projector.parallax -= true_.projector.from_camera * (true_.camera.matrix() * centre_m);
   if (settings.tracker_mm > 0 || settings.tracker_deg > 0)
     true_.camera_from_tracker = pose_error(settings, random) * base.camera_from_tracker;
   if (settings.lens_px > 0) true_.camera.k1 += lens_error(base.camera, settings.lens_px, random);
 }
 
 glm::dvec2 TrueGeometry::to_projector(const glm::dvec3& camera_m) const {
-  return true_.to_projector(true_.camera.project(camera_m), camera_m.z);
+  return true_.projector.pixel_of(true_.camera.project(camera_m), camera_m.z);
 }
 
 }  // namespace handcast::twin

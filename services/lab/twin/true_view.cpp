@@ -19,7 +19,7 @@ constexpr std::int64_t kVelocityStep_ns = 1'000'000;
 TrueView::TrueView(const Twin& twin, int width_px, int height_px)
     : twin_(twin), surface_(width_px, height_px), inverse_depth_(width_px, height_px) {
   // A homography that mirrors reverses the orientation of the triangles.
-  front_ = glm::determinant(glm::dmat2(twin.geometry().calibration().projector_from_camera)) > 0
+  front_ = glm::determinant(glm::dmat2(twin.geometry().calibration().projector.from_camera)) > 0
                ? -1.0f
                : 1.0f;
   for (const Side side : {Side::left, Side::right}) {

@@ -232,8 +232,8 @@ static Result<calib::Calibration> true_base(const config::Rig& rig,
   if (base && (has_other_size(base->camera, believed.camera) ||
                (base->camera2 && believed.camera2 &&
                 has_other_size(base->camera2->camera, believed.camera2->camera)) ||
-               base->projector_width_px != believed.projector_width_px ||
-               base->projector_height_px != believed.projector_height_px))
+               base->projector.width_px != believed.projector.width_px ||
+               base->projector.height_px != believed.projector.height_px))
     return fail(Errc::bad_config, fmt::format("twin.geometry.calibration: {} has images of other "
                                               "sizes than the calibration of the rig",
                                               file));

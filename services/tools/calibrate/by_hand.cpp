@@ -99,7 +99,7 @@ DraggedCorners::DraggedCorners(const calib::Calibration& draft) {
   const double near = kInset, far = 1 - kInset;
   camera_px_ = {
       {{near * w, near * h}, {far * w, near * h}, {far * w, far * h}, {near * w, far * h}}};
-  for (std::size_t i = 0; i < 4; ++i) projector_px_[i] = draft.to_projector(camera_px_[i]);
+  for (std::size_t i = 0; i < 4; ++i) projector_px_[i] = draft.projector.pixel_of(camera_px_[i]);
 }
 
 bool DraggedCorners::press(const Key& key) {
@@ -174,8 +174,8 @@ Result<Outcome> align_by_hand(Desk& desk) {
     bool has_moved = window && obey(window->take_grips(), corners);
     while (const auto key = desk.keys.pressed()) {
       if (key->character == '\n') {
-        desk.draft.projector_from_camera = corners.homography();
-        desk.draft.parallax = {};
+        desk.draft.projector.from_camera = corners.homography();
+        desk.draft.projector.parallax = {};
         return Outcome{"aligned by hand at four corners",
                        true,
                        {"the light was not measured: it is right at the distance at which it was "

@@ -45,7 +45,7 @@ class DraggedCorners {
 /// Aligns a coaxial projector by hand, for a camera that does not see its light: the camera's image
 /// is projected, and a person drags its corners until it falls onto the things that it shows: with
 /// the arrow keys in the terminal, or with the mouse in a window (see DragWindow). Sets
-/// draft.projector_from_camera. Errors: bad_config (nobody is at the terminal), those of the
+/// draft.projector.from_camera. Errors: bad_config (nobody is at the terminal), those of the
 /// streams.
 Result<Outcome> align_by_hand(Desk& desk);
 

@@ -29,11 +29,11 @@ calib::CameraModel usual_lens(Size size) {
 calib::Calibration from_sizes(Size camera, Size projector) {
   calib::Calibration rough;
   rough.camera = usual_lens(camera);
-  rough.projector_width_px = projector.width_px;
-  rough.projector_height_px = projector.height_px;
+  rough.projector.width_px = projector.width_px;
+  rough.projector.height_px = projector.height_px;
   const double scale_x = static_cast<double>(projector.width_px) / camera.width_px,
                scale_y = static_cast<double>(projector.height_px) / camera.height_px;
-  rough.projector_from_camera = {scale_x,           0, 0, 0, scale_y, 0, (scale_x - 1) / 2,
+  rough.projector.from_camera = {scale_x,           0, 0, 0, scale_y, 0, (scale_x - 1) / 2,
                                  (scale_y - 1) / 2, 1};
   return rough;
 }
@@ -176,8 +176,8 @@ Result<RunningAs> rig_as_it_runs(const Options& options, const config::Rig& rig,
           fmt::format("{} was made with {}; to calibrate the new one, too, add the sizes of "
                       "the images, e.g. --camera 1280x1024 --projector {}x{}: it gets a "
                       "file of its own, and the old one stays",
-                      rig.calibration, others, calibration->projector_width_px,
-                      calibration->projector_height_px));
+                      rig.calibration, others, calibration->projector.width_px,
+                      calibration->projector.height_px));
   }
   if (!has_sizes)
     return fail(Errc::bad_config,
@@ -201,7 +201,7 @@ Result<void> check_known(const Options& options, const RunningAs& running) {
   if (same)
     same = check_size(
         "--projector", options.projector,
-        {running.calibration.projector_width_px, running.calibration.projector_height_px});
+        {running.calibration.projector.width_px, running.calibration.projector.height_px});
   if (same && running.calibration.camera2)
     same = check_size("--camera2", options.camera2,
                       {running.calibration.camera2->camera.width_px,

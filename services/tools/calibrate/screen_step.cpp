@@ -92,9 +92,9 @@ Result<Outcome> fit_views(Desk& desk, std::span<const calib::DepthView> views) {
   const auto fit = calib::fit_screen(views, desk.draft.camera, mean_depth_m(views),
                                      {desk.screen.width_px(), desk.screen.height_px()});
   if (!fit) return tl::make_unexpected(fit.error());
-  desk.draft.projector_from_camera = fit->model.projector_from_camera;
-  desk.draft.parallax = fit->model.parallax;
-  desk.draft.plane_m = fit->model.plane_m;
+  desk.draft.projector.from_camera = fit->model.from_camera;
+  desk.draft.projector.parallax = fit->model.parallax;
+  desk.draft.projector.plane_m = fit->model.plane_m;
   const double held_out_px =
       fit->coaxial ? fit->held_out_coaxial.median : fit->held_out_full.median;
   Outcome outcome{fmt::format("{} places of the board, {:.2f} px held out, {}", views.size(),
@@ -157,7 +157,7 @@ Off off_of(const calib::Calibration& used, const calib::DepthView& view) {
                          (px.y - used.camera.cy_px) / used.camera.fy_px, 1);
     const double depth_m = -view.plane.w / glm::dot(glm::dvec3(view.plane), ray);
     if (!(depth_m > 0)) continue;
-    const auto off = used.to_projector(px, depth_m) - point.projector_px;
+    const auto off = used.projector.pixel_of(px, depth_m) - point.projector_px;
     off_px.push_back(glm::length(off));
     right_px.push_back(off.x);
     down_px.push_back(off.y);

@@ -58,8 +58,8 @@ Result<Outcome> with_rig(const Options& options, const RunningAs& running, const
   auto own_rig = rig_of(options, rig->name, settings,
                         logs / fmt::format("{}.log", config::word_of(entry.step)), is_up);
   if (!own_rig) return tl::make_unexpected(own_rig.error());
-  auto screen = TestScreen::open(rig->name, running.calibration.projector_width_px,
-                                 running.calibration.projector_height_px);
+  auto screen = TestScreen::open(rig->name, running.calibration.projector.width_px,
+                                 running.calibration.projector.height_px);
   if (!screen) return tl::make_unexpected(screen.error());
   Desk desk{options, *as_it_runs, running.calibration, draft, *own_rig, *screen, keys};
   auto outcome = options.check ? entry.check(desk) : entry.measure(desk);

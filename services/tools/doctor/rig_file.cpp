@@ -44,8 +44,8 @@ constexpr double kSameRate = 0.01;  ///< share; 59.94 Hz is 60 Hz
   if (!found) return tl::make_unexpected(found.error());
   const auto& display = found->display;
   const auto chosen = choose_mode(display.modes, kms.mode,
-                                  {.width_px = calibration.projector_width_px,
-                                   .height_px = calibration.projector_height_px,
+                                  {.width_px = calibration.projector.width_px,
+                                   .height_px = calibration.projector.height_px,
                                    .rate_hz = rig.projector.rate_hz});
   if (!chosen) return tl::make_unexpected(chosen.error());
   const auto& mode = display.modes[*chosen];
@@ -60,7 +60,7 @@ constexpr double kSameRate = 0.01;  ///< share; 59.94 Hz is 60 Hz
 std::vector<Finding> judge_mode(const DisplayMode& mode, const config::Projector& projector,
                                 const calib::Calibration& calibration) {
   std::vector<Finding> findings;
-  const int width_px = calibration.projector_width_px, height_px = calibration.projector_height_px;
+  const int width_px = calibration.projector.width_px, height_px = calibration.projector.height_px;
   if (mode.width_px == width_px && mode.height_px == height_px)
     findings.push_back({"display", Grade::good, mode.display, ""});
   else
@@ -106,7 +106,7 @@ Finding second_camera_of(const calib::Calibration& calibration) {
                       second.camera.height_px, 1e3 * glm::length(glm::dvec3(second.from_camera[3])),
                       made.empty() ? "it is not said when that was measured"
                                    : "measured " + made.substr(0, made.find(':')),
-                      calibration.projector_width_px, calibration.projector_height_px),
+                      calibration.projector.width_px, calibration.projector.height_px),
           ""};
 }
 
@@ -132,8 +132,8 @@ Finding calibration_of(const config::Rig& rig) {
   if (has_second) return second_camera_of(*calibration);
   return {"calibration", Grade::good,
           fmt::format("camera {} x {} px, projector {} x {} px", calibration->camera.width_px,
-                      calibration->camera.height_px, calibration->projector_width_px,
-                      calibration->projector_height_px),
+                      calibration->camera.height_px, calibration->projector.width_px,
+                      calibration->projector.height_px),
           ""};
 }
 

@@ -251,7 +251,7 @@ Showing showing_of(const Plan& plan) {
   showing.rate_hz = first.rate_hz > 0 ? first.rate_hz : showing.rate_hz;
   if (!plan.needs_calibration()) {
     const auto calibration = plan.calibration.value_or(calib::Calibration());
-    const Size wanted{calibration.projector_width_px, calibration.projector_height_px};
+    const Size wanted{calibration.projector.width_px, calibration.projector.height_px};
     const bool can_change = plan.light.backend == "kms";
     const auto fit = can_change ? fastest(modes, wanted) : std::nullopt;
     if (fit) return {.rate_hz = fit->rate_hz, .mode = {}, .is_scaled = false, .size = wanted};

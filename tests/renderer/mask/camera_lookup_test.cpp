@@ -21,11 +21,11 @@ class Lookup : public ::testing::TestWithParam<bool> {
   calib::Calibration calibration = GetParam() ? bent() : calib::reference_rig();
   CameraLookup lookup{calibration};
   Image<std::uint8_t> mask{calibration.camera.width_px, calibration.camera.height_px, 0};
-  Image<std::uint8_t> out{calibration.projector_width_px, calibration.projector_height_px, 99};
-  const Rect screen{0, 0, calibration.projector_width_px, calibration.projector_height_px};
+  Image<std::uint8_t> out{calibration.projector.width_px, calibration.projector.height_px, 99};
+  const Rect screen{0, 0, calibration.projector.width_px, calibration.projector.height_px};
 
   glm::dvec2 camera_of(int x, int y) const {
-    return calibration.camera.distort(calibration.to_camera({x, y}));
+    return calibration.camera.distort(calibration.projector.camera_pixel_of({x, y}));
   }
 };
 INSTANTIATE_TEST_SUITE_P(Lenses, Lookup, ::testing::Values(false, true),
@@ -250,14 +250,15 @@ TEST_P(Lookup, AHandThatWasOutsideTheImageIsNotSeen) {
 TEST(CameraLookup, WhereTheCameraSeesNothingThereIsNoHand) {
   calib::Calibration calibration = calib::reference_rig();
   for (int row = 0; row < 3; ++row)
-    calibration.projector_from_camera[0][row] *= 0.5;  // the camera sees half of the screen
+    calibration.projector.from_camera[0][row] *= 0.5;  // the camera sees half of the screen
   const CameraLookup lookup(calibration);
   Image<std::uint8_t> mask(calibration.camera.width_px, calibration.camera.height_px, 255),
       out(1024, 768, 99);
   lookup.resample(mask.view(), {0, 0, 1024, 768}, out.view());
   for (int y = 0; y < 768; y += 5)
     for (int x = 0; x < 1024; ++x) {
-      const glm::dvec2 camera = calibration.camera.distort(calibration.to_camera({x, y}));
+      const glm::dvec2 camera =
+          calibration.camera.distort(calibration.projector.camera_pixel_of({x, y}));
       if (camera.x < -0.7 || camera.x > 719.7 || camera.y < -0.7 || camera.y > 539.7) {
         ASSERT_EQ(out.at(x, y), 0) << x << ' ' << y;
       }

@@ -55,7 +55,7 @@ Pixels light_of(const AdvanceScene& scene, bool advance) {
     (*pipeline)->push(t, scene.poses(t));
   const auto image = scene.image(kExposure_ns);
   const Frame frame = (*pipeline)->render(kNow_ns, kTarget_ns, {image.view(), kExposure_ns});
-  Pixels light(scene.calibration.projector_width_px, scene.calibration.projector_height_px);
+  Pixels light(scene.calibration.projector.width_px, scene.calibration.projector.height_px);
   for (int y = frame.region.y0; y < frame.region.y1; ++y)
     for (int x = frame.region.x0; x < frame.region.x1; ++x)
       if (frame.colour.at(x, y) >> 24 >= 128) light.at(x, y) = frame.colour.at(x, y);
@@ -65,8 +65,8 @@ Pixels light_of(const AdvanceScene& scene, bool advance) {
 /// The hands at the time of the photons.
 Pixels truth_of(const AdvanceScene& scene) {
   const auto image = scene.image(kTarget_ns);
-  Image<std::uint8_t> grey(scene.calibration.projector_width_px,
-                           scene.calibration.projector_height_px);
+  Image<std::uint8_t> grey(scene.calibration.projector.width_px,
+                           scene.calibration.projector.height_px);
   CameraLookup(scene.calibration)
       .resample(image.view(), {0, 0, grey.width(), grey.height()}, grey.view());
   Pixels truth(grey.width(), grey.height());
@@ -78,8 +78,8 @@ Pixels truth_of(const AdvanceScene& scene) {
 int wrist_row(const AdvanceScene& scene) {
   const auto [x, y, z] = scene.hands[0].at(kTarget_ns).joints[1].position_m;
   return static_cast<int>(
-      scene.calibration
-          .to_projector(scene.calibration.camera.project(in_camera(scene.calibration, {x, y, z})))
+      scene.calibration.projector
+          .pixel_of(scene.calibration.camera.project(in_camera(scene.calibration, {x, y, z})))
           .y);
 }
 

@@ -43,21 +43,21 @@ TEST(NearnessGrid, WithoutVerticesOnTheScreenItIsThePlane) {
 /// The rig with a projector that is 15 cm beside the camera.
 TEST(ALookupBesideTheCamera, FindsTheMaskOfASurfaceOffThePlane) {
   auto calibration = calib::reference_rig();
-  calibration.parallax =
-      -(calibration.projector_from_camera * (calibration.camera.matrix() * glm::dvec3(0.15, 0, 0)));
+  calibration.projector.parallax =
+      -(calibration.projector.from_camera * (calibration.camera.matrix() * glm::dvec3(0.15, 0, 0)));
   constexpr double kDepth_m = 0.66;
   constexpr int kEdge_px = 360;
   const CameraLookup lookup(calibration);
   Image<std::uint8_t> mask(calibration.camera.width_px, calibration.camera.height_px);
   for (int y = 0; y < mask.height(); ++y)
     std::fill(mask.row(y) + kEdge_px, mask.row(y) + mask.width(), std::uint8_t{255});
-  Image<std::uint8_t> out(calibration.projector_width_px, calibration.projector_height_px, 99);
+  Image<std::uint8_t> out(calibration.projector.width_px, calibration.projector.height_px, 99);
   const std::vector<float> nearness(
       static_cast<std::size_t>(lookup.columns()) * static_cast<std::size_t>(lookup.rows()),
-      static_cast<float>(1 / kDepth_m - 1 / calibration.plane_m));
+      static_cast<float>(1 / kDepth_m - 1 / calibration.projector.plane_m));
   lookup.resample(mask.view(), {0, 0, out.width(), out.height()}, out.view(), {}, nearness);
 
-  const auto camera_from_projector = glm::inverse(calibration.homography_at(kDepth_m));
+  const auto camera_from_projector = glm::inverse(calibration.projector.homography_at(kDepth_m));
   for (int y = 0; y < out.height(); y += 7)
     for (int x = 0; x < out.width(); x += 3) {
       const auto at = camera_from_projector * glm::dvec3(x, y, 1);
@@ -69,7 +69,8 @@ TEST(ALookupBesideTheCamera, FindsTheMaskOfASurfaceOffThePlane) {
     }
   const Rect image{300, 200, 340, 260};
   const auto region = lookup.to_projector(image, nearness[0]);
-  const auto corner = calibration.to_projector(calibration.camera.undistort({300, 200}), kDepth_m);
+  const auto corner =
+      calibration.projector.pixel_of(calibration.camera.undistort({300, 200}), kDepth_m);
   EXPECT_NEAR(region.x0, corner.x, 4);
   EXPECT_NEAR(region.y0, corner.y, 4);
 }

@@ -31,7 +31,7 @@ TEST_P(EveryCorrection, LandmarksMoveTheLightOntoTheHand) {
 
   const glm::dvec2 at = frame.hands[0].tracker[9];
   const glm::dvec2 moved =
-      calibration.to_projector(at + glm::dvec2(12, -6)) - calibration.to_projector(at);
+      calibration.projector.pixel_of(at + glm::dvec2(12, -6)) - calibration.projector.pixel_of(at);
   const glm::vec2 landed = mean_vertex(frame.hands[0]) - before;
   EXPECT_NEAR(landed.x, moved.x, 0.7);
   EXPECT_NEAR(landed.y, moved.y, 0.7);
@@ -59,7 +59,7 @@ TEST_P(EveryCorrection, AWrongTrackerIsMendedByLandmarksMaskAndFill) {
   feed_still(*pipeline, {hand});
   feed_landmarks(*pipeline, calibration, hand, {15, 10});
   const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {image.view(), 102 * kMs});
-  const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].corrected[0]));
+  const glm::dvec2 wrist = calibration.projector.pixel_of(glm::dvec2(frame.hands[0].corrected[0]));
   const LightCount count = count_light(frame, calibration, image, wrist.y);
   EXPECT_EQ(count.spill_px, 0);
   EXPECT_LT(count.dark_px, count.hand_px / 100);
@@ -87,7 +87,7 @@ TEST_P(EveryCorrection, TwoHandsAreBothCorrectedOnTheFullPath) {
   EXPECT_NEAR(frame.hands[0].corrected[8].x - frame.hands[0].tracker[8].x, 8, 0.2);
   EXPECT_NEAR(frame.hands[1].corrected[8].x - frame.hands[1].tracker[8].x, -8, 0.2);
   for (const FrameHand& hand : frame.hands) {
-    const glm::dvec2 knuckle = calibration.to_projector(glm::dvec2(hand.tracker[9]));
+    const glm::dvec2 knuckle = calibration.projector.pixel_of(glm::dvec2(hand.tracker[9]));
     EXPECT_TRUE(lit(frame, static_cast<int>(knuckle.x), static_cast<int>(knuckle.y)));
   }
 }

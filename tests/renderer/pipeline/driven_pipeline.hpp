@@ -60,7 +60,8 @@ inline int lit_pixels(const Frame& frame, const Rect& part = {0, 0, 1 << 20, 1 <
 /// Grey value of the camera image at a projector pixel, moved by `aside_px` camera px.
 inline int grey_at(const calib::Calibration& calibration, const Image<std::uint8_t>& image, int x,
                    int y, glm::dvec2 aside_px = {}) {
-  const glm::dvec2 at = calibration.camera.distort(calibration.to_camera({x, y})) + aside_px;
+  const glm::dvec2 at =
+      calibration.camera.distort(calibration.projector.camera_pixel_of({x, y})) + aside_px;
   const int cx = static_cast<int>(std::lround(at.x)), cy = static_cast<int>(std::lround(at.y));
   return cx < 0 || cy < 0 || cx >= image.width() || cy >= image.height() ? 0 : image.at(cx, cy);
 }

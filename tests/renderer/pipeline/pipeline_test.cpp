@@ -67,7 +67,7 @@ TEST_P(EverySide, LightCoversTheHandAndNothingElse) {
   ASSERT_EQ(frame.hands.size(), 1u);
   EXPECT_EQ(frame.hands[0].side, GetParam());
 
-  const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].tracker[0]));
+  const glm::dvec2 wrist = calibration.projector.pixel_of(glm::dvec2(frame.hands[0].tracker[0]));
   const LightCount count = count_light(frame, calibration, image, wrist.y);
   EXPECT_GT(count.hand_px, 20000);
   EXPECT_LT(count.dark_px, count.hand_px / 200);
@@ -82,7 +82,7 @@ TEST(Pipeline, WithoutMaskingTheArmBeyondTheWristIsNotDrawnEither) {
       make_pipeline(cascade(config::CorrectMethod::none, config::FillMethod::none));
   feed_still(*pipeline, {pose_of(Side::left)});
   const Frame frame = pipeline->render(104 * kMs, 108 * kMs, {});
-  const glm::dvec2 wrist = calibration.to_projector(glm::dvec2(frame.hands[0].tracker[0]));
+  const glm::dvec2 wrist = calibration.projector.pixel_of(glm::dvec2(frame.hands[0].tracker[0]));
   EXPECT_GT(lit_pixels(frame), 20000);
   // 14 mm of forearm, and the ring of triangles across the cut.
   EXPECT_LT(frame.region.y1, wrist.y + 90);

@@ -185,7 +185,9 @@ TEST(FadingLight, AHandThatIsCoveredFadesAloneAndMovesOnWithItsHand) {
     const Frame frame = pipeline->render(ms * kMs, (ms + 4) * kMs, {image.view(), (ms - 2) * kMs});
     double sum[2] = {}, across = 0;
     const auto middle = static_cast<int>(
-        calibration.to_projector(calibration.camera.project(in_camera(calibration, {0, 0, 0}))).x);
+        calibration.projector
+            .pixel_of(calibration.camera.project(in_camera(calibration, {0, 0, 0})))
+            .x);
     for (int y = frame.region.y0; y < frame.region.y1; ++y)
       for (int x = frame.region.x0; x < frame.region.x1; ++x) {
         if (!(frame.colour.at(x, y) >> 24)) continue;

@@ -94,7 +94,7 @@ TEST_P(MovingHand, EachSubFrameIsTheFrameOfItsOwnTime) {
   }();
   const auto output = calib::output_of(calibration, GetParam());
   const auto packer =
-      renderer::make_packer(settings, output.projector_width_px, output.projector_height_px);
+      renderer::make_packer(settings, output.projector.width_px, output.projector.height_px);
   const auto drawing = fast_hand(calibration);
   SubFramePlan plan(settings);
   plan.start(kStart_ns);

@@ -53,8 +53,8 @@ class ProjectorContract : public testing::TestWithParam<std::string_view> {
       card_->plug_in("HDMI-A-1", "EPSON PJ", {test::timing(32, 24, 100)});
     }
 #endif
-    calibration_.projector_width_px = 32;
-    calibration_.projector_height_px = 24;
+    calibration_.projector.width_px = 32;
+    calibration_.projector.height_px = 24;
     rig_.projector.rate_hz = 100;
     rig_.projector.latency_ms = 4;
     open();

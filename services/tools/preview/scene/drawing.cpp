@@ -120,7 +120,7 @@ std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedH
   std::vector<glm::vec2> image_px(mesh->vertex_count(), glm::vec2(kFarthest_px));
   for (std::size_t i = 0; i < image_px.size(); ++i) {
     if (!is_sound(landing(hand, i))) continue;
-    const auto px = calibration.to_camera(landing(hand, i));
+    const auto px = calibration.projector.camera_pixel_of(landing(hand, i));
     if (is_near(calibration.camera, px)) image_px[i] = calibration.camera.distort(px);
   }
   std::vector<std::pair<std::uint16_t, std::uint16_t>> edges;

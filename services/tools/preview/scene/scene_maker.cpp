@@ -38,7 +38,7 @@ FromCamera::FromCamera(const calib::Calibration& calibration)
       rows_(calibration.camera.height_px / kStep_px + 2) {
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column)
-      table_.emplace_back(calibration.to_projector(
+      table_.emplace_back(calibration.projector.pixel_of(
           calibration.camera.undistort(glm::dvec2(column * kStep_px, row * kStep_px))));
 }
 
@@ -107,7 +107,7 @@ renderer::Rect busy_part(const std::vector<ShownHand>& hands, const msg::Project
   std::vector<glm::vec2> corners;
   for (const auto corner : {glm::dvec2(left, top), glm::dvec2(right, top), glm::dvec2(left, bottom),
                             glm::dvec2(right, bottom)})
-    corners.emplace_back(calibration.camera.distort(calibration.to_camera(corner)));
+    corners.emplace_back(calibration.camera.distort(calibration.projector.camera_pixel_of(corner)));
   if (projection.region_width_px > 0) part = part.joined(around(corners));
   return part;
 }

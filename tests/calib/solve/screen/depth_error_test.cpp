@@ -33,8 +33,7 @@ TEST(DepthError, OfACoaxialHomographyGrowsWithTheDistanceFromItsPlane) {
 TEST(DepthError, SaysForEachDepthHowFarAModelIsOff) {
   const auto truth = test::screen_beside(0.15);
   auto believed = truth;
-  believed.projector_from_camera =
-      glm::dmat3(1, 0, 0, 0, 1, 0, 2, 0, 1) * truth.projector_from_camera;
+  believed.from_camera = glm::dmat3(1, 0, 0, 0, 1, 0, 2, 0, 1) * truth.from_camera;
   believed.parallax = glm::dmat3(1, 0, 0, 0, 1, 0, 2, 0, 1) * truth.parallax;
   const auto errors = depth_error(believed, truth, test::bent_camera(), kDepths_m);
   ASSERT_EQ(errors.size(), 3u);

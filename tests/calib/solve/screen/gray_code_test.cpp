@@ -40,7 +40,7 @@ std::vector<double> errors_px(const GrayDecoding& decoded) {
   std::vector<double> errors;
   for (const auto& point : decoded.points) {
     const auto truth =
-        test::coaxial_screen().to_projector(test::bent_camera().undistort(point.camera_px), 1);
+        test::coaxial_screen().pixel_of(test::bent_camera().undistort(point.camera_px), 1);
     errors.push_back(glm::distance(truth, point.projector_px));
   }
   return errors;
@@ -219,8 +219,7 @@ TEST(GrayCode, ReadsWeakLight) {
 TEST(GrayCode, SaysThatTheCameraMovedBetweenThePatterns) {
   // Turned by 1.5 camera pixels in x and in y.
   auto turned = test::coaxial_screen();
-  turned.projector_from_camera =
-      turned.projector_from_camera * glm::dmat3(1, 0, 0, 0, 1, 0, 1.5, -1.5, 1);
+  turned.from_camera = turned.from_camera * glm::dmat3(1, 0, 0, 0, 1, 0, 1.5, -1.5, 1);
   RenderedBoard moved(turned, test::tilted_board(test::kPlane_m));
   const auto after = shoot(code(), moved);
   for (int first = 6; first < code().patterns(); first += 10) {

@@ -92,7 +92,7 @@ TEST(FitHomography, RefusesABoardThatIsBent) {
       for (int x = 10; x < 720; x += 20) {
         const auto px = camera.undistort(glm::dvec2(x, y));
         const double depth_m = 0.6 + 0.25 * std::sin(x / 100.);
-        all.push_back({{x, y}, screen.to_projector(px, depth_m), 1});
+        all.push_back({{x, y}, screen.pixel_of(px, depth_m), 1});
       }
     return all;
   };

@@ -74,13 +74,13 @@ CameraModel bent_camera() {
   return camera;
 }
 
-ScreenModel coaxial_screen() {
-  return {reference_rig().projector_from_camera, glm::dvec3(0), kPlane_m};
+ProjectorModel coaxial_screen() {
+  return {reference_rig().projector.from_camera, glm::dvec3(0), kPlane_m};
 }
 
-ScreenModel screen_beside(double baseline_m) { return screen_from({baseline_m, 0, 0}); }
+ProjectorModel screen_beside(double baseline_m) { return screen_from({baseline_m, 0, 0}); }
 
-ScreenModel screen_from(const glm::dvec3& centre_m) {
+ProjectorModel screen_from(const glm::dvec3& centre_m) {
   const double focal_px = 1653, angle = std::atan2(centre_m.x, kPlane_m);
   const glm::dmat3 lens(focal_px, 0, 0, 0, focal_px, 0, 511.5, 383.5, 1);
   const glm::dmat3 turn(glm::rotate(glm::dmat4(1), angle, glm::dvec3(0, 1, 0)));
@@ -88,7 +88,7 @@ ScreenModel screen_from(const glm::dvec3& centre_m) {
   const auto parallax = -infinite * centre_m;
   auto homography = infinite * glm::inverse(bent_camera().matrix());
   homography[2] += parallax / kPlane_m;
-  return ScreenModel{homography, parallax, kPlane_m}.normalised();
+  return ProjectorModel{homography, parallax, kPlane_m}.normalised();
 }
 
 glm::dvec4 tilted_board(double depth_m, double tilt_rad) {
@@ -103,7 +103,8 @@ double depth_of(const glm::dvec4& plane, const CameraModel& camera, const glm::d
   return -plane.w / glm::dot(glm::dvec3(plane), ray);
 }
 
-RenderedBoard::RenderedBoard(const ScreenModel& screen, const glm::dvec4& plane, const Scene& scene)
+RenderedBoard::RenderedBoard(const ProjectorModel& screen, const glm::dvec4& plane,
+                             const Scene& scene)
     : scene_(scene), random_(scene.seed) {
   const auto camera = bent_camera();
   const glm::dvec2 middle(camera.cx_px, camera.cy_px);
@@ -113,7 +114,7 @@ RenderedBoard::RenderedBoard(const ScreenModel& screen, const glm::dvec4& plane,
       const auto px = undistorted_parts()[lit_by_.size()];
       const double depth_m = depth_of(plane, camera, px);
       const auto place_m = (px - middle) / camera.fx_px * depth_m;
-      lit_by_.push_back(lit_pixel(screen.to_projector(px, depth_m)));
+      lit_by_.push_back(lit_pixel(screen.pixel_of(px, depth_m)));
       reflected += albedo(scene, place_m.x, place_m.y) / (kParts * kParts);
     }
     const auto away =
@@ -162,7 +163,7 @@ Shots shoot(const GrayCode& code, RenderedBoard& board) {
   return shots;
 }
 
-std::vector<Correspondence> seen_points(const CameraModel& camera, const ScreenModel& screen,
+std::vector<Correspondence> seen_points(const CameraModel& camera, const ProjectorModel& screen,
                                         const glm::dvec4& plane, double noise_px, unsigned seed,
                                         int step_px) {
   std::mt19937 random(seed);
@@ -171,7 +172,7 @@ std::vector<Correspondence> seen_points(const CameraModel& camera, const ScreenM
   for (int y = step_px / 2; y < camera.height_px; y += step_px)
     for (int x = step_px / 2; x < camera.width_px; x += step_px) {
       const auto px = camera.undistort(glm::dvec2(x, y));
-      const auto lit = screen.to_projector(px, depth_of(plane, camera, px));
+      const auto lit = screen.pixel_of(px, depth_of(plane, camera, px));
       points.push_back(
           {glm::dvec2(x, y), lit + noise_px * glm::dvec2(noise(random), noise(random)), 1});
     }
@@ -187,7 +188,8 @@ void spoil(std::vector<Correspondence>& points, double share, unsigned seed) {
                             kProjectorHeight_px * anywhere(random)};
 }
 
-double worst_px(const ScreenModel& believed, const ScreenModel& truth, const CameraModel& camera) {
+double worst_px(const ProjectorModel& believed, const ProjectorModel& truth,
+                const CameraModel& camera) {
   double worst = 0;
   for (const auto& error : depth_error(
            believed, truth, camera,

@@ -4,9 +4,9 @@
 #include <random>
 #include <vector>
 
+#include "calib/projector_model.hpp"
 #include "calib/solve/screen/gray_code.hpp"
 #include "calib/solve/screen/screen_fit.hpp"
-#include "calib/solve/screen/screen_model.hpp"
 
 /// A camera, projectors and boards of which all is known, and what the camera sees of them.
 namespace handcast::calib::test {
@@ -17,12 +17,12 @@ inline constexpr double kPlane_m = 0.73;
 /// 720 x 540, f = 1162 px, k1 = -0.28.
 CameraModel bent_camera();
 /// The homography of the reference rig, at every depth.
-ScreenModel coaxial_screen();
+ProjectorModel coaxial_screen();
 /// A projector with its centre there in camera space, turned to the right or left to look at the
 /// point in front of the camera at kPlane_m (exactly if the centre is on the x axis).
-ScreenModel screen_from(const glm::dvec3& centre_m);
+ProjectorModel screen_from(const glm::dvec3& centre_m);
 /// screen_from() on the x axis, to the right of the camera.
-ScreenModel screen_beside(double baseline_m);
+ProjectorModel screen_beside(double baseline_m);
 /// A board whose middle is at this depth, turned about the axis (1, 0.5, 0).
 glm::dvec4 tilted_board(double depth_m, double tilt_rad = 0.2);
 /// The depth of a plane along an undistorted pixel.
@@ -42,7 +42,7 @@ struct Scene {
 /// The images of bent_camera() of a plane board under the patterns of a projector.
 class RenderedBoard {
  public:
-  RenderedBoard(const ScreenModel& screen, const glm::dvec4& plane, const Scene& scene = {});
+  RenderedBoard(const ProjectorModel& screen, const glm::dvec4& plane, const Scene& scene = {});
   /// The image of a picture of the projector's size.
   std::vector<std::uint8_t> image_of(const std::vector<std::uint8_t>& picture);
 
@@ -66,13 +66,14 @@ Shots shoot(const GrayCode& code, RenderedBoard& board);
 
 /// Correspondences of a board without images: on a grid of the camera's image, with noise in the
 /// projector's pixels.
-std::vector<Correspondence> seen_points(const CameraModel& camera, const ScreenModel& screen,
+std::vector<Correspondence> seen_points(const CameraModel& camera, const ProjectorModel& screen,
                                         const glm::dvec4& plane, double noise_px, unsigned seed,
                                         int step_px = 20);
 /// Replaces a share of the points by anything on the projector.
 void spoil(std::vector<Correspondence>& points, double share, unsigned seed);
 
 /// The largest error over the camera's image within 100 mm of kPlane_m, projector px.
-double worst_px(const ScreenModel& believed, const ScreenModel& truth, const CameraModel& camera);
+double worst_px(const ProjectorModel& believed, const ProjectorModel& truth,
+                const CameraModel& camera);
 
 }  // namespace handcast::calib::test

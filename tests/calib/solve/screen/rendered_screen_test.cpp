@@ -13,7 +13,7 @@ using test::bent_camera, test::kPlane_m, test::tilted_board;
 constexpr double kGood_px = 0.5;
 
 /// The points that are decoded from the images of a board.
-std::vector<Correspondence> decoded(const ScreenModel& screen, double depth_m,
+std::vector<Correspondence> decoded(const ProjectorModel& screen, double depth_m,
                                     const test::Scene& scene = {}) {
   const GrayCode code(test::kProjectorWidth_px, test::kProjectorHeight_px);
   test::RenderedBoard board(screen, tilted_board(depth_m), scene);
@@ -22,7 +22,7 @@ std::vector<Correspondence> decoded(const ScreenModel& screen, double depth_m,
   return read ? read->points : std::vector<Correspondence>();
 }
 
-std::vector<DepthView> views_of(const ScreenModel& screen, const std::vector<double>& depths_m,
+std::vector<DepthView> views_of(const ProjectorModel& screen, const std::vector<double>& depths_m,
                                 const test::Scene& scene = {}) {
   std::vector<DepthView> views;
   for (const double depth_m : depths_m)
@@ -52,12 +52,12 @@ TEST(RenderedScreen, HalfOfABoardIsEnoughForItsHalfOfTheImage) {
   const auto truth = test::coaxial_screen();
   const auto fit = fit_homography(decoded(truth, kPlane_m, {.board_right_m = 0}), bent_camera());
   ASSERT_TRUE(fit) << fit.error().what;
-  const ScreenModel model{fit->projector_from_camera, glm::dvec3(0), kPlane_m};
+  const ProjectorModel model{fit->projector_from_camera, glm::dvec3(0), kPlane_m};
   double worst_px = 0;
   for (int y = 0; y < 540; y += 20)
     for (int x = 0; x < 360; x += 20)
-      worst_px = std::max(
-          worst_px, glm::distance(model.to_projector({x, y}, 1), truth.to_projector({x, y}, 1)));
+      worst_px =
+          std::max(worst_px, glm::distance(model.pixel_of({x, y}, 1), truth.pixel_of({x, y}, 1)));
   std::printf("  worst error %.3f px in this half, %.3f px in both\n", worst_px,
               test::worst_px(model, truth, bent_camera()));
   EXPECT_LE(worst_px, kGood_px);

@@ -14,7 +14,7 @@ using test::bent_camera, test::coaxial_screen, test::kPlane_m, test::screen_besi
     test::seen_points, test::tilted_board;
 using testing::HasSubstr, testing::IsEmpty, testing::Contains;
 
-std::vector<DepthView> views_of(const ScreenModel& screen, const std::vector<double>& depths_m,
+std::vector<DepthView> views_of(const ProjectorModel& screen, const std::vector<double>& depths_m,
                                 double noise_px, unsigned seed = 1) {
   std::vector<DepthView> views;
   for (const double depth_m : depths_m) {
@@ -32,27 +32,25 @@ ScreenFit fit_of(const std::vector<DepthView>& views) {
   return fit ? *fit : ScreenFit{};
 }
 
-double worst_px(const ScreenFit& fit, const ScreenModel& truth) {
+double worst_px(const ScreenFit& fit, const ProjectorModel& truth) {
   return test::worst_px(fit.model, truth, bent_camera());
 }
 
-TEST(ScreenModel, MapsAsItsProjectionMatrixDoes) {
+TEST(ProjectorModel, MapsAsItsProjectionMatrixDoes) {
   const auto screen = screen_beside(0.15);
-  EXPECT_EQ(screen.projector_from_camera[2][2], 1);
+  EXPECT_EQ(screen.from_camera[2][2], 1);
   // The point in front of the camera at kPlane_m is in the middle of the picture.
   const glm::dvec2 middle(359.5, 269.5);
-  EXPECT_LT(glm::distance(screen.to_projector(middle, kPlane_m), {511.5, 383.5}), 1e-9);
+  EXPECT_LT(glm::distance(screen.pixel_of(middle, kPlane_m), {511.5, 383.5}), 1e-9);
   for (const double depth_m : {0.5, 0.73, 1.2}) {
     const glm::dvec2 px(100, 400);
     EXPECT_LT(
-        glm::distance(screen.to_projector(px, depth_m), mapped(screen.homography_at(depth_m), px)),
+        glm::distance(screen.pixel_of(px, depth_m), mapped(screen.homography_at(depth_m), px)),
         1e-9);
-    EXPECT_EQ(screen.homography_at(depth_m)[2][2], 1);
   }
   const glm::dvec3 centre_m(0.1, -0.05, 0.2);
-  EXPECT_LT(glm::distance(test::screen_from(centre_m).projector_centre_m(bent_camera()), centre_m),
-            1e-9);
-  EXPECT_LT(glm::length(coaxial_screen().projector_centre_m(bent_camera())), 1e-9);
+  EXPECT_LT(glm::distance(test::screen_from(centre_m).centre_m(bent_camera()), centre_m), 1e-9);
+  EXPECT_LT(glm::length(coaxial_screen().centre_m(bent_camera())), 1e-9);
 }
 
 TEST(FitScreen, FindsTheTruthExactlyWithoutNoise) {

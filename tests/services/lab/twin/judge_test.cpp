@@ -58,7 +58,7 @@ class PerfectLight {
     screen.resize(positions.size());
     for (std::size_t v = 0; v < positions.size(); ++v) {
       const glm::dvec3 p(rig.camera_from_tracker * glm::dvec4(positions[v], 1));
-      const glm::vec2 px = glm::vec2(rig.to_projector(rig.camera.project(p))) + shift_px_;
+      const glm::vec2 px = glm::vec2(rig.projector.pixel_of(rig.camera.project(p))) + shift_px_;
       screen.x[v] = px.x;
       screen.y[v] = px.y;
       screen.inverse_depth[v] = static_cast<float>(1 / p.z);
@@ -191,7 +191,7 @@ TEST(Judge, EachHandAnswersForItself) {
   const auto twin = twin_of(rig_with("builtin:two_hands"));
   auto light = light_of(*twin, kLit_ns);
   const auto right = twin->landmarks(Side::right, kLit_ns);
-  const auto tip = calib::reference_rig().to_projector((*right)[12]);
+  const auto tip = calib::reference_rig().projector.pixel_of((*right)[12]);
   for (int y = 0; y < 10; ++y)
     for (int x = 0; x < 10; ++x)
       light.light(static_cast<int>(tip.x) + x, static_cast<int>(tip.y) - 60 + y);
@@ -235,7 +235,7 @@ TEST(Judge, LightOnTheForearmIsNeitherCoverageNorSpill) {
   const auto score_with_patch = [&](int below_wrist_px) {
     Projected light;
     const auto wrist =
-        calib::reference_rig().to_projector((*twin->landmarks(Side::left, kLit_ns))[0]);
+        calib::reference_rig().projector.pixel_of((*twin->landmarks(Side::left, kLit_ns))[0]);
     for (int y = 0; y < 20; ++y)
       for (int x = -10; x < 10; ++x)
         light.light(static_cast<int>(wrist.x) + x, static_cast<int>(wrist.y) + below_wrist_px + y);
@@ -272,7 +272,8 @@ TEST(Judge, LightWithoutAHandIsSpill) {
 TEST(Judge, OnlyTheRegionOfTheProjectionIsRead) {
   const auto twin = twin_of(rig_with("builtin:still"));
   const auto judge = Judge::create(*twin, 4);
-  const auto palm = calib::reference_rig().to_projector((*twin->landmarks(Side::left, kLit_ns))[9]);
+  const auto palm =
+      calib::reference_rig().projector.pixel_of((*twin->landmarks(Side::left, kLit_ns))[9]);
   Projected light;
   light->region_x_px = static_cast<int>(palm.x) - 5;
   light->region_y_px = static_cast<int>(palm.y) - 5;

@@ -12,7 +12,7 @@ const glm::dvec3 kHand_m(0.03, -0.05, 0.73);
 
 glm::dvec2 believed_px(const glm::dvec3& camera_m) {
   const auto rig = calib::reference_rig();
-  return rig.to_projector(rig.camera.project(camera_m));
+  return rig.projector.pixel_of(rig.camera.project(camera_m));
 }
 
 TEST(TrueGeometry, WithoutErrorsIsTheCalibration) {
@@ -37,8 +37,8 @@ TEST(TrueGeometry, TheHomographyIsWrongByAsMuchAsAskedInTheCorners) {
   constexpr int kSeeds = 200;
   for (int seed = 0; seed < kSeeds; ++seed) {
     const TrueGeometry truth({.homography_px = 2}, seed, rig);
-    const auto corner = rig.to_camera({0, 0});
-    const auto moved = truth.calibration().to_projector(corner);
+    const auto corner = rig.projector.camera_pixel_of({0, 0});
+    const auto moved = truth.calibration().projector.pixel_of(corner);
     square += glm::dot(moved, moved);
   }
   EXPECT_NEAR(std::sqrt(square / kSeeds), 2, 0.25);

@@ -13,7 +13,7 @@ TEST(DraggedCorners, BeginWithTheHomographyOfTheDraft) {
   const auto found = DraggedCorners(draft).homography();
   for (const glm::dvec2 px : {glm::dvec2(0, 0), glm::dvec2(700, 20), glm::dvec2(300, 500)}) {
     const auto mapped = found * glm::dvec3(px, 1);
-    EXPECT_LT(glm::distance(glm::dvec2(mapped) / mapped.z, draft.to_projector(px)), 1e-6);
+    EXPECT_LT(glm::distance(glm::dvec2(mapped) / mapped.z, draft.projector.pixel_of(px)), 1e-6);
   }
 }
 
@@ -26,7 +26,7 @@ TEST(DraggedCorners, AnArrowMovesOnlyTheChosenCorner) {
   EXPECT_TRUE(corners.press(arrow(Key::Arrow::down)));
   const auto moved = [&](const glm::dvec2& px) {
     const auto mapped = corners.homography() * glm::dvec3(px, 1);
-    return glm::dvec2(mapped) / mapped.z - draft.to_projector(px);
+    return glm::dvec2(mapped) / mapped.z - draft.projector.pixel_of(px);
   };
   EXPECT_LT(glm::distance(moved(third_px), {5, 5}), 1e-6);
   EXPECT_LT(glm::length(moved(first_px)), 1e-6);

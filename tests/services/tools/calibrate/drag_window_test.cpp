@@ -18,7 +18,7 @@ TEST(DragWindow, ACornerThatIsDraggedInTheWindowMovesInTheProjectorsImage) {
   const test::DisplayServer server;
   if (!server) GTEST_SKIP() << test::DisplayServer::why();
   const auto draft = calib::reference_rig();
-  const int width_px = draft.projector_width_px, height_px = draft.projector_height_px;
+  const int width_px = draft.projector.width_px, height_px = draft.projector.height_px;
   const auto window = open_drag_window(width_px, height_px, nullptr);
   ASSERT_TRUE(window) << window.error().what;
   const std::vector<std::uint8_t> levels(

@@ -49,8 +49,8 @@ TEST_F(RigSettings, WithSizesItRunsWithACalibrationThatTheServicesAccept) {
   const auto rough = calib::load_calibration(file);
   ASSERT_TRUE(rough) << rough.error().what;
   EXPECT_EQ(rough->camera.width_px, 1280);
-  EXPECT_EQ(rough->projector_height_px, 1080);
-  EXPECT_LT(glm::distance(rough->to_projector({639.5, 511.5}), {959.5, 539.5}), 1e-6);
+  EXPECT_EQ(rough->projector.height_px, 1080);
+  EXPECT_LT(glm::distance(rough->projector.pixel_of({639.5, 511.5}), {959.5, 539.5}), 1e-6);
 }
 
 TEST_F(RigSettings, ACalibrationOfAnotherCameraLeadsToOneOfItsOwn) {

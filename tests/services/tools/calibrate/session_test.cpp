@@ -199,7 +199,7 @@ TEST_F(CalibrateSession, ADraftThatServicesWouldRefuseDoesNotTakeThePlaceOfAGood
   rig_.calibration = own;
   auto session = open();
   auto unusable = used_;
-  unusable.projector_from_camera = glm::dmat3(0);
+  unusable.projector.from_camera = glm::dmat3(0);
   ASSERT_TRUE(session.keep(Step::screen, {"nonsense"}, unusable));
   const auto finished = session.finish();
   ASSERT_FALSE(finished);

@@ -54,8 +54,8 @@ class RigText : public testing::Test {
     auto calibration = calib::reference_rig();
     calibration.camera.width_px = width_px;
     calibration.camera.height_px = height_px;
-    calibration.projector_width_px = projector_width_px;
-    calibration.projector_height_px = projector_height_px;
+    calibration.projector.width_px = projector_width_px;
+    calibration.projector.height_px = projector_height_px;
     const std::string file = scratch_.path() / "calibration.toml";
     std::ofstream(file) << calib::print_calibration(calibration);
     options_.flags.calibration = file;

@@ -24,7 +24,7 @@ struct StillHand {
 
   static glm::vec2 lands(glm::dvec2 image_px) {
     const auto calibration = world().calibration;
-    return calibration.to_projector(calibration.camera.undistort(image_px));
+    return calibration.projector.pixel_of(calibration.camera.undistort(image_px));
   }
   /// The drawing between two positions of the image.
   void draw(glm::dvec2 low, glm::dvec2 high) { draw_square(*cast, lands(low), lands(high)); }
@@ -69,8 +69,9 @@ TEST(Regions, TheLightLiesOverTheImageWhereItLands) {
   StillHand hand;
   const auto scene = hand.maker.make(&*hand.image, &*hand.cast);
   const auto calibration = world().calibration;
-  const auto inside = calibration.camera.distort(calibration.to_camera({132, 132})),
-             outside = calibration.camera.distort(calibration.to_camera({132, 180}));
+  const auto inside = calibration.camera.distort(calibration.projector.camera_pixel_of({132, 132})),
+             outside =
+                 calibration.camera.distort(calibration.projector.camera_pixel_of({132, 180}));
   ASSERT_GT(inside.x, 0);
   ASSERT_GT(inside.y, 0);
   const auto pixel = [&](glm::dvec2 px) {

@@ -65,8 +65,8 @@ TEST(LiveJudge, TheScoreDoesNotDependOnWhenTheRigWasStarted) {
   ASSERT_TRUE(later);
 
   msg::Projection dark;
-  dark.width_px = static_cast<std::uint32_t>(calibration.projector_width_px);
-  dark.height_px = static_cast<std::uint32_t>(calibration.projector_height_px);
+  dark.width_px = static_cast<std::uint32_t>(calibration.projector.width_px);
+  dark.height_px = static_cast<std::uint32_t>(calibration.projector.height_px);
   dark.lit_ns = kSecond_ns / 2;
   const auto expected = (*at_zero)->score(dark);
   dark.lit_ns += epoch_ns;
