@@ -29,11 +29,6 @@ constexpr double kMostUnusualShare = 0.005;   ///< of the patches
 constexpr double kMostEdgeResidual_px = 0.3;  ///< camera px; 0.15 in a steady picture
 constexpr int kDark = -1;                     ///< a cell that was not read
 
-/// The cell of the code that lights a pixel.
-struct Cell {
-  int column = kDark, row = kDark;
-};
-
 /// As std::hypot(), which is ten times as slow since it cares for numbers that overflow.
 double length(double a, double b) { return std::sqrt(a * a + b * b); }
 
@@ -57,6 +52,11 @@ class GrayDecoder {
   Result<GrayDecoding> run();
 
  private:
+  /// The cell of the code that lights a pixel.
+  struct Cell {
+    int column = kDark, row = kDark;
+  };
+
   int grey(std::size_t image, int x, int y) const {
     return images_[image].pixels[y * images_[image].stride + x];
   }
@@ -135,7 +135,7 @@ double GrayDecoder::noise(int x, int y) const {
 }
 
 /// At most one bit of each coordinate may be unsure: on an edge, either side is right.
-Cell GrayDecoder::read_cell(int x, int y) const {
+GrayDecoder::Cell GrayDecoder::read_cell(int x, int y) const {
   const int light = contrast(x, y);
   if (light < least_contrast_) return {};
   const double sure = std::max(kSureShare * light, kSureInNoise * noise(x, y));
