@@ -15,8 +15,6 @@
 namespace handcast::dlp {
 namespace {
 
-enum Job { kNothing, kWrite, kRead, kClose };
-
 /// A read ends by itself at its deadline; this is the time that its thread may take to say so.
 constexpr std::int64_t kGrace_ns = 500'000'000;
 /// The time that a call gets whose deadline has passed: what can be done at once is done.
@@ -54,6 +52,8 @@ Error why_not_open(const HidInfo& info) {
 
 /// What the caller and the thread share. All members but `handle` are guarded by `mutex`.
 struct HidDevice::Port {
+  enum Job { kNothing, kWrite, kRead, kClose };
+
   explicit Port(hid_device* opened) : handle(opened) {}
   ~Port() { hid_close(handle); }
   Port(const Port&) = delete;
@@ -126,7 +126,7 @@ HidDevice::HidDevice(std::shared_ptr<Port> port) : port_(std::move(port)) {
 HidDevice::~HidDevice() {
   {
     const std::lock_guard lock(port_->mutex);
-    port_->job = kClose;
+    port_->job = Port::kClose;
   }
   port_->changed.notify_all();
   if (lost_)
@@ -141,12 +141,12 @@ Result<int> HidDevice::carry_out(int job, protocol::Report& report, Deadline dea
   std::unique_lock lock(port_->mutex);
   port_->deadline = deadline;
   port_->report = report;
-  port_->job = static_cast<Job>(job);
+  port_->job = static_cast<Port::Job>(job);
   port_->changed.notify_all();
   const auto patience_ns =
-      std::max(deadline.time_ns() + (job == kRead ? kGrace_ns : 0), now_ns() + kLeast_ns);
+      std::max(deadline.time_ns() + (job == Port::kRead ? kGrace_ns : 0), now_ns() + kLeast_ns);
   lost_ = !port_->changed.wait_until(lock, time_of(patience_ns),
-                                     [this] { return port_->job == kNothing; });
+                                     [this] { return port_->job == Port::kNothing; });
   if (lost_) return fail(Errc::disconnected, "the device takes no commands");
   lost_ = port_->result < 0;
   if (lost_) return fail(Errc::disconnected, "the device has been unplugged");
@@ -156,12 +156,12 @@ Result<int> HidDevice::carry_out(int job, protocol::Report& report, Deadline dea
 
 Result<void> HidDevice::write(const protocol::Report& report, Deadline deadline) {
   auto copy = report;
-  const auto written = carry_out(kWrite, copy, deadline);
+  const auto written = carry_out(Port::kWrite, copy, deadline);
   return written ? Result<void>() : tl::make_unexpected(written.error());
 }
 
 Result<std::size_t> HidDevice::read(protocol::Report& report, Deadline deadline) {
-  const auto count = carry_out(kRead, report, deadline);
+  const auto count = carry_out(Port::kRead, report, deadline);
   if (!count) return tl::make_unexpected(count.error());
   if (*count == 0) return fail(Errc::timeout, "the device has not answered");
   return static_cast<std::size_t>(*count);
