@@ -23,6 +23,8 @@ constexpr int kLeastWindow_px = 2, kLargestWindow_px = 16;
 constexpr std::size_t kFewestPoints = 6;
 /// Points farther from the others' homography are mistakes, in squares. A lens bends less.
 constexpr double kMistake = 0.5;
+/// If a smaller share of the points agrees, they are those of another board.
+constexpr double kLeastAgreeing = 0.6;
 /// How far a corner may be from where its neighbours place it, as a share of the distance to them.
 constexpr double kOutOfLine = 0.1;
 /// How far from a corner the four squares are looked at, in squares: before a marker begins. A
@@ -157,7 +159,9 @@ std::vector<Found> consistent(const Board& board, std::vector<Found> found) {
   std::vector<Found> kept;
   for (std::size_t i = 0; i < agrees.size(); ++i)
     if (agrees[i]) kept.push_back(found[i]);
-  return enough(board, kept) ? kept : std::vector<Found>{};
+  const auto fewest = kLeastAgreeing * static_cast<double>(found.size());
+  return enough(board, kept) && static_cast<double>(kept.size()) >= fewest ? kept
+                                                                           : std::vector<Found>{};
 }
 
 std::vector<Found> refined(const Board& board, const cv::Mat1b& image, std::vector<Found> found) {
