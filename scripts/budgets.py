@@ -82,6 +82,8 @@ def header_breaches(sources):
         here = pathlib.PurePosixPath(header).parent
         declared = sources.lines(header, header_of(user))
         defined = sources.lines(twin_of(header), source_of(user))
+        if user.endswith(".cpp"):  # which then declares it, too
+            defined += sources.lines(header)
         if pathlib.PurePosixPath(user).parent == here and max(declared, defined) <= FOLDED_LINES:
             yield f"{header}: only {user} includes it; fold it into that file"
 

@@ -34,6 +34,10 @@ The charts need the results of these plans in config/sweeps: A and C ladder.toml
 failures.toml. scripts/charts runs all of them."""
 
 VERBS = {
+    "calibration-page": Verb(
+        "Makes report.html of what `handcast calibrate`, which calls this program, has measured.",
+        "pages.calibration.write",
+        (Option("--folder", "Folder of the calibration, with report.json; the page is written to it (required)", "DIR", is_required=True),)),
     "chart": Verb(
         "Draws the results of sweeps: a self-contained page, the charts as SVG, and the numbers behind them as CSV.",
         "pages.chart.write",

@@ -26,7 +26,7 @@ REPOSITORY = SOURCE.parent.parent
 PATIENCE_S = 60  # ends what hangs
 PROGRAMS = {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks",
             "handcast-projector", "handcast-observer", "handcast-simulate", "handcast-sweep",
-            "handcast-detect", "handcast-report", "handcast-chart", "handcast-devices",
+            "handcast-detect", "handcast-report", "handcast-chart", "handcast-devices", "handcast-calibration-page",
             "handcast-doctor", "handcast-init", "handcast-record", "handcast-calibrate", "handcast-template"}
 OPTIONAL = {"handcast-dlp", "handcast-exporter", "handcast-preview"}
 LINE = re.compile(r"frame (\d+) for ([\d.]+) ms:(?: image ([\d.]+) ms)?"

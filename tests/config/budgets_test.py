@@ -65,6 +65,12 @@ class Budgets(unittest.TestCase):
         with mock.patch.object(budgets, "UNFOLDED_HEADERS", 0):
             self.assertEqual(self.said(), "")
 
+    def test_a_header_that_would_make_its_source_long_may_stand_alone(self):
+        self.write("ipc/b.hpp", SOURCE)
+        self.write("ipc/c.cpp", '#include "ipc/b.hpp"\n' + SOURCE * 2)
+        with mock.patch.object(budgets, "UNFOLDED_HEADERS", 0):
+            self.assertEqual(self.said(), "")
+
     def test_a_wide_line_of_a_document_is_reported_but_not_a_row_of_a_table(self):
         self.write("a.md", "x" * 121 + "\n|" + "x" * 200 + "|\n")
         self.assertIn("a.md:1: 121 columns", self.said())

@@ -145,7 +145,7 @@ TEST_F(Calibrate, WhatWasMeasuredIsHandedOverBesideARigThatIsUp) {
   auto draft = calib::reference_rig();
   draft.made.lens = draft.made.screen = draft.made.tracker = "measured";
   std::ofstream(folder / "draft.toml") << calib::print_calibration(draft);
-  std::ofstream(folder / "light.html") << "measured";
+  std::ofstream(folder / "light.json") << "measured";
   std::ofstream(folder / "screen.settings") << "projector.latency_ms = 4\n";
   const auto rig = up();
   wait_until_light();
@@ -158,7 +158,7 @@ TEST_F(Calibrate, WhatWasMeasuredIsHandedOverBesideARigThatIsUp) {
   const auto applied = config::load_rig(rig_file(), {});
   ASSERT_TRUE(applied) << applied.error().what;
   EXPECT_EQ(applied->projector.latency_ms, 4);
-  fs::remove(folder / "light.html");
+  fs::remove(folder / "light.json");
   EXPECT_THAT(calibrate({}).log, HasSubstr("stop it with `handcast down`"));
 }
 

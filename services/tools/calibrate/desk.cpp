@@ -7,8 +7,6 @@
 
 #include <cmath>
 
-#include "ipc/daemon/stop_signal.hpp"
-
 namespace handcast::calibrate {
 namespace {
 
@@ -34,11 +32,6 @@ Key::Arrow arrow_of(char code) {
 }
 
 }  // namespace
-
-Result<void> not_stopped() {
-  if (!daemon::stop_requested()) return {};
-  return fail(Errc::unavailable, "stopped; the next call goes on with this step");
-}
 
 Keys::Keys() {
   termios state{};
@@ -111,9 +104,9 @@ void Progress::note(const std::string& sentence) {
   printed_ns_ = 0;
 }
 
-Result<bool> Progress::goes_on() {
-  if (auto runs = desk_.own_rig.check(); !runs) return tl::make_unexpected(runs.error());
-  bool is_ended = end_.passed();
+bool Progress::goes_on() {
+  if (result_) result_ = desk_.own_rig.check();
+  bool is_ended = !result_ || end_.passed();
   while (const auto key = desk_.keys.pressed()) is_ended = is_ended || key->character == '\n';
   return !is_ended;
 }

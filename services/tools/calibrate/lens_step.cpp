@@ -13,13 +13,10 @@
 #include "calib/solve/lens/lens_fit.hpp"
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/write_whole.hpp"
-#include "services/tools/calibrate/pictures.hpp"
 #include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
-
-using namespace std::chrono_literals;
 
 std::filesystem::path file_of(const std::filesystem::path& folder, const std::string& step) {
   return folder / (step + ".covariance");
@@ -54,38 +51,31 @@ Result<std::vector<calib::BoardView>> take_views(Desk& desk, const Ring& ring,
   calib::AutoCapture capture(camera.width_px);
   std::vector<calib::BoardView> views;
   Progress progress(desk, ring.step);
-  while (coverage.share() < 1 || views.size() < kEnoughViews) {
-    if (const auto on = progress.goes_on(); !on || !*on) {
-      if (!on) return tl::make_unexpected(on.error());
-      break;
-    }
+  while ((coverage.share() < 1 || views.size() < kEnoughViews) && progress.goes_on()) {
     const double views_share = static_cast<double>(views.size()) / kEnoughViews;
     progress.show(std::min({0.99, coverage.share(), views_share}),
                   lens_advice(views.size(), kEnoughViews, coverage.advice()));
-    const auto frame = frames->latest(Deadline::in(200ms));
-    if (!frame && frame.error().code != Errc::timeout) return tl::make_unexpected(frame.error());
+    const auto frame = progress.latest(*frames);
     if (!frame) continue;
     auto seen = finder.find(view_of(**frame));
     if (!seen || !capture.take((*frame)->header.origin_ns, *seen)) continue;
     coverage.add(*seen);
     views.push_back(std::move(*seen));
   }
-  return views;
+  return progress.result().map([&] { return std::move(views); });
 }
 
-std::string pictures_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
+std::vector<Picture> pictures_of(const calib::LensFit& fit,
+                                 std::span<const calib::BoardView> views) {
   std::vector<glm::dvec2> dots;
   for (const auto& view : views)
     dots.insert(dots.end(), view.image_px.begin(), view.image_px.end());
-  std::vector<Bar> errors;
-  for (const auto& view : fit.views) errors.push_back({view.rms_px, !view.rejected.empty()});
-  return dots_svg(fit.camera.width_px, fit.camera.height_px, dots,
-                  fmt::format("Where the board was seen: {} corners in {} images. Parts without "
-                              "dots are extrapolated.",
-                              dots.size(), views.size())) +
-         bars_svg(errors, "px",
-                  "How far the corners of each image are from where the lens has them, root mean "
-                  "square. Those in the other colour were left out.");
+  return {dots_picture(fit.camera.width_px, fit.camera.height_px, dots,
+                       fmt::format("Where the board was seen: {} corners in {} images. Parts "
+                                   "without dots are extrapolated.",
+                                   dots.size(), views.size())),
+          errors_picture(fit.views,
+                         "How far the corners of each image are from where the lens has them.")};
 }
 
 Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {

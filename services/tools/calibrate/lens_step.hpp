@@ -4,9 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "calib/solve/board/grey_view.hpp"
 #include "calib/solve/lens/lens_fit.hpp"
-#include "ipc/msg/camera_frame.hpp"
 
 /// What the steps `lens` and `lens2` share with others.
 namespace handcast::calibrate {
@@ -14,12 +12,6 @@ namespace handcast::calibrate {
 /// What to do next. `wanted`: images that are enough; `place`: where the board was not seen yet, or
 /// how it was not tilted; empty if it was everywhere.
 std::string lens_advice(std::size_t views, std::size_t wanted, const std::string& place);
-
-/// The image of a frame. Valid as long as the frame.
-inline calib::GreyView view_of(const msg::CameraFrame& frame) {
-  const auto width = static_cast<int>(frame.width_px);
-  return {frame.pixels(), width, static_cast<int>(frame.height_px), width};
-}
 
 /// How well a lens is known, for the steps that stand on it: the calibration file has only the lens
 /// itself. Writes the lens and its covariance to FOLDER/STEP.covariance. Errors: unavailable.

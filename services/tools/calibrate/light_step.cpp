@@ -5,54 +5,13 @@
 #include <algorithm>
 
 #include "ipc/base/number_text.hpp"
-#include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/landmarks.hpp"
-#include "services/tools/calibrate/delay_report.hpp"
-#include "services/tools/calibrate/light/hand_light.hpp"
-#include "services/tools/calibrate/sound/recorder.hpp"
+#include "services/tools/calibrate/hand_light.hpp"
+#include "services/tools/calibrate/light_delay.hpp"
 #include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
-
-using namespace std::chrono_literals;
-
-constexpr int kToggles = 24;
-constexpr double kHold_s = 0.24, kCardDelay_ms = 2;
-
-/// Toggles the light.
-Result<std::vector<calib::Toggle>> toggle(Desk& desk) {
-  std::vector<calib::Toggle> toggles;
-  for (int i = 0; i < kToggles; ++i) {
-    if (auto runs = desk.own_rig.check(); !runs) return tl::make_unexpected(runs.error());
-    const bool is_bright = i % 2 == 0;
-    const auto until_ns = now_ns() + seconds_to_ns(kHold_s);
-    desk.screen.show_level(is_bright ? 255 : 0);
-    const auto light = desk.screen.first_light(Deadline::in(2s));
-    if (!light) return tl::make_unexpected(light.error());
-    toggles.push_back({light->middle_ns - light->period_ns / 2, is_bright, light->is_sure});
-    sleep_until_ns(until_ns);
-  }
-  return toggles;
-}
-
-/// Measures by a light that toggles and a photodiode on a sound card how much later than reported
-/// the light comes; the camera is not needed. Takes about 6 s. The low end of the interval is 2 ms
-/// lower than the samples say, because a sound card delivers them up to so much late. Errors: those
-/// of open_sound_card(), Recorder, calib::fit_sound_delay() and of the streams.
-Result<calib::LightDelay> measure_delay_by_sound(Desk& desk, const std::string& device) {
-  auto card = open_sound_card(device);
-  if (!card) return tl::make_unexpected(card.error());
-  Recorder recorder(std::move(*card));
-  sleep_until_ns(now_ns() + seconds_to_ns(kHold_s));
-  const auto toggles = toggle(desk);
-  const auto clip = recorder.finish();
-  if (!toggles) return tl::make_unexpected(toggles.error());
-  if (!clip) return tl::make_unexpected(clip.error());
-  auto delay = calib::fit_sound_delay(*toggles, *clip);
-  if (delay) delay->low_ms -= kCardDelay_ms;
-  return delay;
-}
 
 constexpr std::size_t kEnoughImages = 200;
 constexpr double kLook_s = 8;
@@ -83,21 +42,14 @@ class Alternation {
   std::int64_t changed_ns_ = 0;
 };
 
-/// Adds the next landmarks with their image, if they are of one hand. False if none came.
-Result<bool> look(client::Stream<msg::Landmarks>& landmarks,
-                  client::Stream<msg::CameraFrame>& frames, const Alternation& alternation,
-                  HandLight& light) {
-  const auto found = landmarks.next(Deadline::in(200ms));
-  if (!found && found.error().code == Errc::timeout) return false;
-  if (!found) return tl::make_unexpected(found.error());
-  if ((*found)->count != 1) return false;
-  const auto origin_ns = (*found)->header.origin_ns;
+/// Adds landmarks with their image. False if they are not of one hand, or the image is gone.
+bool look(const msg::Landmarks& found, client::Stream<msg::CameraFrame>& frames,
+          const Alternation& alternation, HandLight& light) {
+  if (found.count != 1) return false;
+  const auto origin_ns = found.header.origin_ns;
   const auto frame = frames.at(origin_ns);
   if (!frame || (*frame)->header.origin_ns != origin_ns) return false;
-  const msg::CameraFrame& image = **frame;
-  const auto width = static_cast<int>(image.width_px);
-  light.add({image.pixels(), width, static_cast<int>(image.height_px), width}, (*found)->hands[0],
-            alternation.at(origin_ns));
+  light.add(view_of(**frame), found.hands[0], alternation.at(origin_ns));
   return true;
 }
 
@@ -111,25 +63,21 @@ Result<HandLight> watch(Desk& desk) {
   Alternation alternation(desk.screen);
   Progress progress(desk, "light");
   std::int64_t first_ns = 0;
-  for (;;) {
-    if (const auto on = progress.goes_on(); !on || !*on) {
-      if (!on) return tl::make_unexpected(on.error());
-      return light;
-    }
+  while (progress.goes_on()) {
     const double share =
         std::min(static_cast<double>(light.images()) / static_cast<double>(kEnoughImages),
                  first_ns == 0 ? 0 : ns_to_seconds(now_ns() - first_ns) / kLook_s);
-    if (share >= 1) return light;
+    if (share >= 1) break;
     if (first_ns == 0) {
       progress.show(share, "Hold one open hand still in the middle");
     } else {
       progress.say(share, "Hold the hand still; the light changes");
       alternation.turn();
     }
-    const auto seen = look(*landmarks, *frames, alternation, light);
-    if (!seen) return tl::make_unexpected(seen.error());
-    if (*seen && first_ns == 0) first_ns = now_ns();
+    const auto found = progress.next(*landmarks);
+    if (found && look(**found, *frames, alternation, light) && first_ns == 0) first_ns = now_ns();
   }
+  return progress.result().map([&] { return std::move(light); });
 }
 
 std::string made_of(const HandLight& light) {
@@ -148,7 +96,7 @@ Result<Outcome> measure_light(Desk& desk) {
   Outcome outcome;
   if (!desk.options.photodiode.empty()) {
     fmt::print(stderr, "  measuring the delay of the light with the photodiode\n");
-    const auto delay = measure_delay_by_sound(desk, desk.options.photodiode);
+    const auto delay = measure_delay_by_sound(desk);
     if (!delay) return tl::make_unexpected(delay.error());
     report_delay(desk.rig, *delay, outcome);
   }
@@ -170,7 +118,7 @@ Result<Outcome> measure_light(Desk& desk) {
   outcome.meaning =
       "Grey values are medians of 0 (black) to 255 (saturated). The projector's light: full light "
       "less none on the hand, which a filter before the camera should keep near 0";
-  outcome.pictures = histogram_svg(*light);
+  outcome.pictures = {histograms_picture(*light)};
   return outcome;
 }
 

@@ -14,11 +14,10 @@
 #include "ipc/base/program.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/stop_signal.hpp"
-#include "services/tools/calibrate/correct.hpp"
 #include "services/tools/calibrate/hand_over.hpp"
-#include "services/tools/calibrate/own_devices.hpp"
-#include "services/tools/calibrate/points.hpp"
+#include "services/tools/calibrate/programs.hpp"
 #include "services/tools/calibrate/steps.hpp"
+#include "services/tools/calibrate/tracker_tasks.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -28,27 +27,39 @@ int complain(const Error& error) {
   return exit_code_of(error);
 }
 
-/// Does one step, and keeps what it has measured. False if the person has left the step out.
-Result<bool> do_step(const Options& options, const RunningAs& running, Session& session, Keys& keys,
-                     Step step) {
+/// What a call has measured.
+struct Measured {
+  int steps = 0;
+  Result<void> page;  ///< whether the last one could be written
+};
+
+/// Does one step, and keeps what it has measured, if the person has not left the step out.
+Result<void> do_step(const Options& options, const RunningAs& running, Session& session, Keys& keys,
+                     Step step, Measured& measured) {
   auto draft = session.draft();
-  const auto outcome =
-      measure_step(options, running, session.report().parent_path(), draft, keys, step);
+  const auto outcome = measure_step(options, running, session.folder(), draft, keys, step);
   if (!outcome) return tl::make_unexpected(outcome.error());
-  if (!*outcome) return false;
-  return session.keep(step, **outcome, draft).map([] { return true; });
+  if (!*outcome) return {};
+  if (auto kept = session.keep(step, **outcome, draft); !kept) return kept;
+  ++measured.steps;
+  measured.page = write_page(session.folder());
+  return {};
 }
 
-/// Measures what is left, or was asked for. `done`: how many steps.
+/// Measures what is left, or was asked for.
 Result<void> measure_steps(const Options& options, const RunningAs& running, Session& session,
-                           std::span<const Step> steps, int& done) {
+                           std::span<const Step> steps, Measured& measured) {
   Keys keys;
-  for (const Step step : steps) {
-    const auto kept = do_step(options, running, session, keys, step);
-    if (!kept) return fail_in(config::word_of(step), kept.error());
-    done += *kept ? 1 : 0;
-  }
+  for (const Step step : steps)
+    if (auto done = do_step(options, running, session, keys, step, measured); !done)
+      return fail_in(config::word_of(step), done.error());
   return {};
+}
+
+void tell_page(const Session& session, const Result<void>& page) {
+  if (page) return fmt::print("the report is {}\n", session.file("report.html").string());
+  fmt::print(stderr, "handcast calibrate: the report was not written: {}\n",
+             printable(page.error().what));
 }
 
 /// What was measured, now or in an earlier call, gets its place even if a later step has failed.
@@ -57,17 +68,17 @@ Result<int> measure_all(const Options& options, const config::Rig& rig, const Ru
   const auto steps = steps_of(options, rig, session);
   if (!steps.empty())
     if (auto down = check_down(rig); !down) return tl::make_unexpected(down.error());
-  int done = 0;
-  const auto measured = measure_steps(options, running, session, steps, done);
-  if (done > 0)
-    fmt::print("the report is {}\n", session.report().string());
-  else if (measured)
+  Measured measured;
+  const auto done = measure_steps(options, running, session, steps, measured);
+  if (measured.steps > 0)
+    tell_page(session, measured.page);
+  else if (done)
     fmt::print("{}\n", steps.empty() ? "nothing is left to be measured; --restart begins anew"
                                      : "nothing was measured");
   const auto handed_over = hand_over(options, rig, running.calibration, session);
-  if (measured) return handed_over.map([] { return kExitDone; });
+  if (done) return handed_over.map([] { return kExitDone; });
   if (!handed_over) complain(handed_over.error());
-  return tl::make_unexpected(measured.error());
+  return tl::make_unexpected(done.error());
 }
 
 Result<int> print_board(const Options& options) {

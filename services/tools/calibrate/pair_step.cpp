@@ -9,7 +9,6 @@
 
 #include "calib/solve/pair/pair_off.hpp"
 #include "services/tools/calibrate/lens_step.hpp"
-#include "services/tools/calibrate/pictures.hpp"
 #include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
@@ -34,23 +33,14 @@ calib::KnownLens known_lens(const Desk& desk, const std::string& step,
   return {camera, covariance.value_or(calib::LensCovariance{})};
 }
 
-std::string picture_of(const calib::CameraModel& camera, std::span<const calib::PairView> views,
-                       calib::BoardView calib::PairView::*image, std::string_view which) {
+Picture picture_of(const calib::CameraModel& camera, std::span<const calib::PairView> views,
+                   calib::BoardView calib::PairView::*image, std::string_view which) {
   std::vector<glm::dvec2> dots;
   for (const auto& view : views)
     dots.insert(dots.end(), (view.*image).image_px.begin(), (view.*image).image_px.end());
-  return dots_svg(camera.width_px, camera.height_px, dots,
-                  fmt::format("Where the {} camera saw the board: {} corners in {} images.", which,
-                              dots.size(), views.size()));
-}
-
-std::string errors_of(const calib::PairFit& fit) {
-  std::vector<Bar> errors;
-  for (const auto& view : fit.views) errors.push_back({view.rms_px, !view.rejected.empty()});
-  return bars_svg(
-      errors, "px",
-      "How far the corners of each view are from where the fit has them in both images, "
-      "root mean square. Views without a bar were left out.");
+  return dots_picture(camera.width_px, camera.height_px, dots,
+                      fmt::format("Where the {} camera saw the board: {} corners in {} images.",
+                                  which, dots.size(), views.size()));
 }
 
 std::string half_widths(const std::array<calib::Spread, 3>& spreads, const char* unit) {
@@ -103,9 +93,12 @@ Result<Outcome> measure_pair(Desk& desk) {
   if (!fit) return tl::make_unexpected(fit.error());
   second->from_camera = fit->second_from_first;
   describe(*fit, outcome);
-  outcome.pictures = picture_of(desk.draft.camera, views, &calib::PairView::first, "first") +
-                     picture_of(second->camera, views, &calib::PairView::second, "second") +
-                     errors_of(*fit);
+  outcome.pictures = {
+      picture_of(desk.draft.camera, views, &calib::PairView::first, "first"),
+      picture_of(second->camera, views, &calib::PairView::second, "second"),
+      errors_picture(fit->views,
+                     "How far the corners of each view are from where the fit has them in both "
+                     "images.")};
   return outcome;
 }
 

@@ -17,8 +17,6 @@
 namespace handcast::calibrate {
 namespace {
 
-using namespace std::chrono_literals;
-
 constexpr std::size_t kEnoughPairs = 15, kEnoughOfOnePlace = 5;
 constexpr std::size_t kAlmost = 3;    ///< so few views are missing at the end
 constexpr double kDepthRange = 1.25;  ///< farthest distance of the board to its nearest one
@@ -138,19 +136,14 @@ Result<PairSeen> take_pair_views(Desk& desk, PairWanted wanted) {
   if (!second_frames) return tl::make_unexpected(second_frames.error());
   PairViews views(desk, wanted);
   Progress progress(desk, "pair");
-  while (!views.are_enough()) {
-    if (const auto on = progress.goes_on(); !on || !*on) {
-      if (!on) return tl::make_unexpected(on.error());
-      break;
-    }
+  while (!views.are_enough() && progress.goes_on()) {
     progress.show(views.share(), views.advice());
-    const auto frame = frames->latest(Deadline::in(200ms));
-    if (!frame && frame.error().code != Errc::timeout) return tl::make_unexpected(frame.error());
+    const auto frame = progress.latest(*frames);
     if (!frame) continue;
     if (auto seen = views.look(**frame, *second_frames); !seen)
       return tl::make_unexpected(seen.error());
   }
-  return std::move(views).taken();
+  return progress.result().map([&] { return std::move(views).taken(); });
 }
 
 }  // namespace handcast::calibrate

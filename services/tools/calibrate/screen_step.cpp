@@ -8,11 +8,11 @@
 #include <cmath>
 
 #include "calib/solve/screen/depth_error.hpp"
+#include "calib/solve/screen/statistics.hpp"
 #include "ipc/base/number_text.hpp"
 #include "services/tools/calibrate/by_hand.hpp"
-#include "services/tools/calibrate/delay_report.hpp"
-#include "services/tools/calibrate/gamma_step.hpp"
-#include "services/tools/calibrate/pictures.hpp"
+#include "services/tools/calibrate/gamma.hpp"
+#include "services/tools/calibrate/light_delay.hpp"
 #include "services/tools/calibrate/screen_views.hpp"
 #include "services/tools/calibrate/steps.hpp"
 
@@ -56,21 +56,30 @@ std::vector<std::string> light_findings(const LightSeen& light) {
   return findings;
 }
 
+/// By how many projector pixels one homography for all depths would miss.
+Picture errors_of(const calib::ScreenFit& fit, const calib::CameraModel& camera) {
+  const std::array depths_m{fit.depths_m[0], fit.model.plane_m, fit.depths_m[1]};
+  auto errors = calib::coaxial_error(fit.model, camera, depths_m);
+  return {"depths",
+          "By how many projector pixels one homography for all depths would miss. The calibration "
+          "has the parallax, and does not.",
+          {{"grid", {static_cast<double>(errors.columns), static_cast<double>(errors.rows)}},
+           {"depth_m", std::move(errors.depths_m)},
+           {"error_px", std::move(errors.error_px)}}};
+}
+
 /// Where the light was measured, and what one homography would miss.
-std::string pictures_of(const Desk& desk, std::span<const calib::DepthView> views,
-                        const calib::ScreenFit& fit) {
+std::vector<Picture> pictures_of(const Desk& desk, std::span<const calib::DepthView> views,
+                                 const calib::ScreenFit& fit) {
   std::vector<glm::dvec2> dots_px;
   for (const auto& view : views)
     for (const auto& point : view.points) dots_px.push_back(point.camera_px);
   const auto& camera = desk.draft.camera;
-  auto html =
-      dots_svg(camera.width_px, camera.height_px, dots_px,
-               "Where the projector's light was measured; elsewhere the model is extrapolated.");
-  if (fit.coaxial) return html;
-  const std::array depths_m{fit.depths_m[0], fit.model.plane_m, fit.depths_m[1]};
-  return html + errors_svg(calib::coaxial_error(fit.model, camera, depths_m),
-                           "By how many projector pixels one homography for all depths would miss. "
-                           "The calibration has the parallax, and does not.");
+  std::vector<Picture> pictures{dots_picture(
+      camera.width_px, camera.height_px, dots_px,
+      "Where the projector's light was measured; elsewhere the model is extrapolated.")};
+  if (!fit.coaxial) pictures.push_back(errors_of(fit, camera));
+  return pictures;
 }
 
 /// The findings about what was seen, after those of the fit.
@@ -137,12 +146,6 @@ Result<Outcome> measure_screen(Desk& desk) {
 
 constexpr double kUnmoved_px = 0.7;  ///< structured light on one board is right within 0.2 px
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 /// By how many projector pixels the calibration is off on a board.
 struct Off {
   double median_px = 0, depth_m = 0;
@@ -164,7 +167,9 @@ Off off_of(const calib::Calibration& used, const calib::DepthView& view) {
     depths_m.push_back(depth_m);
   }
   if (off_px.empty()) return {};
-  return {median(off_px), median(depths_m), {median(right_px), median(down_px)}};
+  return {calib::median(off_px),
+          calib::median(depths_m),
+          {calib::median(right_px), calib::median(down_px)}};
 }
 
 /// "0.3 px to the left, 1.2 px down", for what does not round to zero.

@@ -12,8 +12,6 @@
 namespace handcast::calibrate {
 namespace {
 
-using namespace std::chrono_literals;
-
 constexpr int kTries = 3;        ///< of a pattern
 constexpr double kMoved_px = 1;  ///< by which the board may have moved during the patterns
 
@@ -45,16 +43,10 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
   of_each_ = 1 / static_cast<double>(wanted);
   std::string advice = "Hold the board still in the light";
   std::string failed = "the board was never still in the projector's light";
-  while (views.size() < wanted) {
-    if (const auto on = progress_->goes_on(); !on || !*on) {
-      if (!on) return tl::make_unexpected(on.error());
-      break;
-    }
+  while (views.size() < wanted && progress_->goes_on()) {
     begun_ = of_each_ * static_cast<double>(views.size());
     progress_->show(begun_, advice);
-    const auto ready = is_ready();
-    if (!ready) return tl::make_unexpected(ready.error());
-    if (!*ready) continue;
+    if (!is_ready()) continue;
     auto view = measure_twice();
     if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
     if (!view) {
@@ -67,7 +59,9 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
         "Now hold it nearer or farther, tilted, and more to the {} of the camera's image",
         seen_.emptiest());
   }
+  const auto done = progress_->result();
   progress_.reset();
+  if (!done) return tl::make_unexpected(done.error());
   if (views.empty()) return fail(Errc::bad_data, failed);
   return views;
 }
@@ -81,13 +75,9 @@ Result<calib::DepthView> ScreenViews::measure_twice() {
 }
 
 /// True if the next image has the board, still and at a new place.
-Result<bool> ScreenViews::is_ready() {
-  const auto frame = frames_.latest(Deadline::in(200ms));
-  if (!frame && frame.error().code == Errc::timeout) return false;
-  if (!frame) return tl::make_unexpected(frame.error());
-  const auto width = static_cast<int>((*frame)->width_px);
-  const auto board =
-      finder_.find({(*frame)->pixels(), width, static_cast<int>((*frame)->height_px), width});
+bool ScreenViews::is_ready() {
+  const auto frame = progress_->latest(frames_);
+  const auto board = frame ? finder_.find(calibrate::view_of(**frame)) : std::nullopt;
   return board && capture_.take((*frame)->header.origin_ns, *board);
 }
 

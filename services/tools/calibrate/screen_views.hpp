@@ -42,7 +42,7 @@ class ScreenViews {
   /// @}
 
  private:
-  Result<bool> is_ready();
+  bool is_ready();
   Result<calib::DepthView> measure_twice();
   Result<PatternImages::Image> shoot_one(int pattern);
   Result<void> shoot_pair(int pattern, std::vector<PatternImages::Image>& images);

@@ -10,11 +10,9 @@
 #include "calib/opencv_file.hpp"
 #include "calib/solve/board/board_name.hpp"
 #include "config/settings/choice.hpp"
-#include "config/settings/files.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "services/tools/calibrate/kept_file.hpp"
-#include "services/tools/calibrate/pieces.hpp"
 #include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
@@ -28,10 +26,10 @@ constexpr const char* kPending = "pending";
 constexpr std::array kSteps{Step::lens,   Step::lens2,   Step::pair,
                             Step::screen, Step::tracker, Step::light};
 
-/// The sentence of a step in the calibration; null if the step measures no part of it.
-std::string* made_of(calib::Made& made, Step step) {
+/// The sentence of a step in the calibration; empty if it was not measured, or is no part of it.
+std::string sentence_of(const calib::Made& made, Step step) {
   const auto member = entry_of(step).made;
-  return member ? &(made.*member) : nullptr;
+  return member ? made.*member : std::string();
 }
 
 /// The rig's own file; a new one next to the rig file if it has none.
@@ -40,20 +38,31 @@ fs::path target_of(const Options& options, const config::Rig& rig) {
   return fs::absolute(options.rig_file).replace_extension("").string() + "_calibration.toml";
 }
 
-/// Gives a draft the names of the devices in use. Error bad_config: it has others.
+/// Gives a device of a draft the name of the one in use. Error bad_config: it has another name.
+Result<void> adopt(const char* what, const std::string& now, std::string& before) {
+  if (!before.empty() && !now.empty() && before != now)
+    return fail(Errc::bad_config,
+                fmt::format("it was the {} '{}', and now it is '{}'", what, before, now));
+  if (before.empty()) before = now;
+  return {};
+}
+
+Result<void> check_images(const char* what, const calib::CameraModel& now,
+                          const calib::CameraModel& before) {
+  if (now.width_px == before.width_px && now.height_px == before.height_px) return {};
+  return fail(Errc::bad_config,
+              fmt::format("images of the {} had {}x{} px, and now have {}x{}", what,
+                          before.width_px, before.height_px, now.width_px, now.height_px));
+}
+
+/// Makes a draft one of the devices in use. Error bad_config: it is of others.
 Result<void> adopt_devices(const calib::Calibration& used, calib::Calibration& draft) {
-  const auto adopt = [](const char* what, const std::string& now,
-                        std::string& before) -> Result<void> {
-    if (!before.empty() && !now.empty() && before != now)
-      return fail(Errc::bad_config,
-                  fmt::format("it was the {} '{}', and now it is '{}'", what, before, now));
-    if (before.empty()) before = now;
-    return {};
-  };
-  auto same = adopt("camera", used.camera_device, draft.camera_device);
+  auto same = check_images("camera", used.camera, draft.camera);
+  if (same) same = adopt("camera", used.camera_device, draft.camera_device);
   if (same && used.camera2) {
     if (!draft.camera2) draft.camera2 = used.camera2;
-    same = adopt("second camera", used.camera2->device, draft.camera2->device);
+    same = check_images("second camera", used.camera2->camera, draft.camera2->camera);
+    if (same) same = adopt("second camera", used.camera2->device, draft.camera2->device);
   }
   return same ? adopt("projector", used.projector_device, draft.projector_device) : same;
 }
@@ -63,10 +72,6 @@ NamedFiles named_by(const Options& options) {
   if (command.board == calib::print_board_name(calib::Board{})) command.board.clear();
   if (options.folder != default_folder(options.rig_file)) command.folder = options.folder.string();
   return command;
-}
-
-bool has_size_of(const calib::CameraModel& one, const calib::CameraModel& other) {
-  return one.width_px == other.width_px && one.height_px == other.height_px;
 }
 
 /// What a new measurement makes worthless: it was measured with the old lens.
@@ -136,17 +141,6 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
   if (!draft)
     return fail(draft.error().code,
                 fmt::format("{}; --restart forgets what was measured before", draft.error().what));
-  if (!has_size_of(draft->camera, used.camera))
-    return fail(Errc::bad_config,
-                fmt::format("what was measured before, in {}, has images of {}x{} px, and the rig "
-                            "has {}x{}; --restart forgets it",
-                            session.folder_.string(), draft->camera.width_px,
-                            draft->camera.height_px, used.camera.width_px, used.camera.height_px));
-  if (draft->camera2 && used.camera2 && !has_size_of(draft->camera2->camera, used.camera2->camera))
-    return fail(Errc::bad_config,
-                fmt::format("what was measured before, in {}, has images of another size of the "
-                            "second camera; --restart forgets it",
-                            session.folder_.string()));
   if (auto same = adopt_devices(used, *draft); !same)
     return fail(same.error().code, fmt::format("what was measured before, in {}: {}; --restart "
                                                "forgets it",
@@ -156,18 +150,14 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
 }
 
 bool Session::is_done(Step step) const {
-  auto made = draft_.made;
-  const auto* sentence = made_of(made, step);
   std::error_code unknown;
-  return sentence ? !sentence->empty() : fs::exists(piece_of(step), unknown);
+  return entry_of(step).made ? !sentence_of(draft_.made, step).empty()
+                             : fs::exists(outcome_of(step), unknown);
 }
 
 bool Session::has_measured() const {
-  auto made = draft_.made;
-  return std::ranges::any_of(kSteps, [&](Step step) {
-    const auto* sentence = made_of(made, step);
-    return sentence && !sentence->empty();
-  });
+  return std::ranges::any_of(kSteps,
+                             [&](Step step) { return !sentence_of(draft_.made, step).empty(); });
 }
 
 bool Session::is_pending() const {
@@ -206,14 +196,14 @@ Result<void> Session::keep_settings(Step step,
   return write_settings(settings_of(step), settings);
 }
 
-fs::path Session::piece_of(Step step) const {
-  return file(fmt::format("{}.html", config::word_of(step)));
+fs::path Session::outcome_of(Step step) const {
+  return file(fmt::format("{}.json", config::word_of(step)));
 }
 
 void Session::forget(Step step) {
   std::error_code absent;
-  if (auto* made = made_of(draft_.made, step)) made->clear();
-  fs::remove(piece_of(step), absent);
+  if (const auto made = entry_of(step).made) (draft_.made.*made).clear();
+  fs::remove(outcome_of(step), absent);
   fs::remove(settings_of(step), absent);
 }
 
@@ -224,29 +214,23 @@ Result<void> Session::keep(Step step, const Outcome& outcome, const calib::Calib
   draft_ = measured;
   for (const Step later : outdated_by(step)) forget(later);
   auto kept = keep_settings(step, outcome.settings);
-  if (auto* made = made_of(draft_.made, step)) {
-    *made = fmt::format("{}: {}", local_time("%Y-%m-%d"), outcome.made);
+  if (const auto made = entry_of(step).made) {
+    draft_.made.*made = fmt::format("{}: {}", local_time("%Y-%m-%d"), outcome.made);
     if (kept) kept = write_whole(file(kPending), "the draft is not in its place yet\n");
   }
-  // The measurement before its pictures, for which a disk may have no room.
+  // The measurement before its findings, for which a disk may have no room.
   if (kept) kept = write_whole(file(kDraft), calib::print_calibration(draft_));
   std::error_code absent;
-  if (kept) fs::remove(piece_of(step), absent);  // old figures must not stand under the new ones
-  if (kept) kept = write_whole(piece_of(step), piece_html(step, outcome));
+  if (kept) fs::remove(outcome_of(step), absent);  // old figures must not stand under the new ones
+  if (kept) kept = write_whole(outcome_of(step), print_outcome(outcome));
   return kept ? write_report() : kept;
 }
 
 Result<void> Session::write_report() const {
-  std::string pieces;
-  for (const Step step : kSteps)
-    if (const auto piece = config::read_text(piece_of(step))) pieces += *piece;
-  auto made = draft_.made;
   std::vector<Reported> reported;
-  for (const Step step : steps_) {
-    const auto* sentence = made_of(made, step);
-    reported.push_back({step, sentence ? *sentence : std::string(), is_done(step)});
-  }
-  return write_whole(report(), report_html(rig_name_, command_, reported, pieces));
+  for (const Step step : steps_)
+    reported.push_back({step, sentence_of(draft_.made, step), is_done(step)});
+  return write_whole(file("report.json"), print_report(rig_name_, command_, reported));
 }
 
 Result<std::string> Session::finish() const {

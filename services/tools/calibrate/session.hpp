@@ -6,33 +6,14 @@
 #include <vector>
 
 #include "calib/calibration.hpp"
-#include "config/measured.hpp"
 #include "config/rig.hpp"
-#include "services/tools/calibrate/options.hpp"
+#include "services/tools/calibrate/findings.hpp"
 
 namespace handcast::calibrate {
 
-/// What a step has found out.
-struct Outcome {
-  std::string made;                   ///< one sentence for the calibration file: how good it is
-  bool is_good = true;                ///< false: it must not take the place of what there is
-  std::vector<std::string> findings;  ///< what a person should know or do, most important first
-  std::string pictures{};             ///< HTML for the report
-  std::vector<config::MeasuredSetting> settings{};
-  bool is_checked = true;  ///< false: a check could not measure anything, and says why
-  std::string meaning{};   ///< for the report: what the figures of `made` are, and which are good
-};
-
-/// What a command must name to go on with a session.
-struct NamedFiles {
-  std::string rig_file;
-  std::string board;   ///< empty: the usual one
-  std::string folder;  ///< empty: the one beside the rig file
-};
-
 /// One calibration of a rig, which may take several calls of the program: the folder with what was
-/// measured so far (draft.toml, a piece of the report for each step), and the calibration file that
-/// it becomes. One thread.
+/// measured so far (draft.toml, and STEP.json and report.json for the report), and the calibration
+/// file that it becomes. One thread.
 class Session {
  public:
   /// Opens the session in options.folder, or begins one. `used`: the calibration that the rig's
@@ -46,8 +27,8 @@ class Session {
   const calib::Calibration& draft() const { return draft_; }
   /// The file that the calibration becomes: the rig's own, or a new one next to the rig file.
   const std::filesystem::path& target() const { return target_; }
-  /// The page with what was measured.
-  std::filesystem::path report() const { return folder_ / "report.html"; }
+  /// The folder of the session.
+  const std::filesystem::path& folder() const { return folder_; }
   /// A file of the session.
   std::filesystem::path file(std::string_view name) const { return folder_ / name; }
 
@@ -62,8 +43,8 @@ class Session {
   std::vector<config::MeasuredSetting> settings() const;
   /// To be called when they are in the rig's file of measured settings.
   void forget_settings() const;
-  /// Makes what a step has measured the draft, keeps the step's outcome and settings, and writes
-  /// the report anew. What was measured with an older lens is forgotten. Errors: bad_data (the
+  /// Makes what a step has measured the draft, and keeps the step's outcome and settings for the
+  /// report and for later. What was measured with an older lens is forgotten. Errors: bad_data (the
   /// outcome is not good, and all stays as it is), unavailable (a file cannot be written).
   Result<void> keep(Step step, const Outcome& outcome, const calib::Calibration& measured);
   /// Writes the draft to target(), and as opencv.yml to the session's folder for other programs;
@@ -77,7 +58,7 @@ class Session {
   void forget(Step step);
   Result<void> keep_settings(Step step, const std::vector<config::MeasuredSetting>& settings) const;
   Result<void> write_report() const;
-  std::filesystem::path piece_of(Step step) const;
+  std::filesystem::path outcome_of(Step step) const;
   std::filesystem::path settings_of(Step step) const;
 
   std::filesystem::path folder_, target_;

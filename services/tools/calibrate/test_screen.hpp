@@ -23,6 +23,10 @@ struct FirstLight {
   bool is_sure = false;  ///< the frame before it was seen, and showed another picture
 };
 
+/// Fills a picture with text, white on black, in the middle: the first line larger, long ones
+/// broken between words. Text that is still too much is drawn smaller.
+void draw_text(const std::vector<std::string>& lines, renderer::Image<std::uint8_t>& picture);
+
 /// The rig's projector as a screen for test pictures. One thread.
 class TestScreen {
  public:

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "services/tools/calibrate/tracker_step.hpp"
+
 // Where the tracker is.
 #include <fmt/format.h>
 
@@ -8,27 +10,20 @@
 #include "calib/solve/tracker/fit_tracker.hpp"
 #include "calib/solve/tracker/volume_coverage.hpp"
 #include "ipc/base/number_text.hpp"
-#include "ipc/msg/hand_poses.hpp"
-#include "ipc/msg/landmarks.hpp"
-#include "services/tools/calibrate/harvest.hpp"
-#include "services/tools/calibrate/pictures.hpp"
-#include "services/tools/calibrate/reflector_fit.hpp"
 #include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
 namespace {
 
-using namespace std::chrono_literals;
-
 constexpr double kSigmaIfUnknown_px = 3;
 constexpr float kLeastConfidence = 0.3f;
 
 /// What tracker and camera have seen of one hand.
-struct Seen {
+struct SeenHand {
   std::vector<calib::TrackerSample> samples;
   std::vector<calib::Sighting> sightings;
 };
-using SeenBySide = std::array<Seen, msg::kMaxHands>;
+using SeenBySide = std::array<SeenHand, msg::kMaxHands>;
 
 glm::dvec3 place_of(const msg::Joint& joint) {
   return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};
@@ -43,7 +38,7 @@ calib::TrackerSample sample_of(std::int64_t time_ns, const msg::HandPose& hand) 
 
 /// The landmarks were undistorted with the lens in use; here they are with the draft's.
 void add_sightings(const Desk& desk, std::int64_t time_ns, const msg::HandLandmarks& hand,
-                   Seen& seen) {
+                   SeenHand& seen) {
   for (int i = 0; i < msg::kLandmarks; ++i) {
     const auto& point = hand.points[static_cast<std::size_t>(i)];
     if (point.confidence < kLeastConfidence) continue;
@@ -54,7 +49,7 @@ void add_sightings(const Desk& desk, std::int64_t time_ns, const msg::HandLandma
 }
 
 /// Adds the newest sample with the newest image: the advice may be some ms old.
-void cover(const Seen& seen, calib::VolumeCoverage& coverage) {
+void cover(const SeenHand& seen, calib::VolumeCoverage& coverage) {
   std::vector<calib::SeenPoint> hand;
   for (std::size_t i = seen.sightings.size(); i-- > 0;) {
     const auto& sighting = seen.sightings[i];
@@ -93,39 +88,28 @@ Result<SeenBySide> watch(Desk& desk) {
   bool sees_hand = false;
   SeenBySide seen;
   Progress progress(desk, "tracker");
-  while (harvest.goes_on(coverage.share(), sees_hand)) {
-    if (const auto on = progress.goes_on(); !on || !*on) {
-      if (!on) return tl::make_unexpected(on.error());
-      break;
-    }
+  while (harvest.goes_on(coverage.share(), sees_hand) && progress.goes_on()) {
     progress.show(coverage.share(), noticed.advice(harvest.advice(coverage.advice())));
-    const auto found = landmarks->next(Deadline::in(200ms));
-    if (!found && found.error().code != Errc::timeout) return tl::make_unexpected(found.error());
+    const auto found = progress.next(*landmarks);
     sees_hand = found && (*found)->count > 0;
     if (sees_hand) noticed.landmarks_ns = now_ns();
     if (found)
-      for (std::uint32_t h = 0; h < std::min((*found)->count, std::uint32_t{msg::kMaxHands}); ++h) {
-        const auto& hand = (*found)->hands[h];
-        if (hand.side > msg::Side::right) continue;  // damaged
+      for (const auto& hand : hands_of(**found))
         add_sightings(desk, (*found)->header.origin_ns, hand,
                       seen[static_cast<std::size_t>(hand.side)]);
-      }
     while (const auto sample = poses->next(Deadline::now()))
-      for (std::uint32_t h = 0; h < std::min((*sample)->count, std::uint32_t{msg::kMaxHands});
-           ++h) {
-        const auto& hand = (*sample)->hands[h];
-        if (hand.side > msg::Side::right) continue;  // damaged
+      for (const auto& hand : hands_of(**sample)) {
         auto& of_side = seen[static_cast<std::size_t>(hand.side)];
         noticed.pose_ns = now_ns();
         of_side.samples.push_back(sample_of((*sample)->header.origin_ns, hand));
         cover(of_side, coverage);
       }
   }
-  return seen;
+  return progress.result().map([&] { return std::move(seen); });
 }
 
 /// The hand that was seen more often.
-const Seen& most_seen(const SeenBySide& seen) {
+const SeenHand& most_seen(const SeenBySide& seen) {
   return seen[0].sightings.size() >= seen[1].sightings.size() ? seen[0] : seen[1];
 }
 
@@ -143,22 +127,21 @@ Result<calib::TrackerFit> fit(Desk& desk, std::vector<glm::dvec2>& seen_px) {
   return calib::fit_tracker(desk.draft.camera, hand.samples, hand.sightings);
 }
 
-/// How well light is placed in the middle and at the corners of the volume.
-std::string errors_table(const calib::TrackerFit& fit) {
-  std::string rows;
-  for (const auto& error : fit.place_errors)
-    rows += fmt::format(
-        "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f}</td><td>{:.1f}</td><td>{:.1f}</td></tr>",
-        &error == &fit.place_errors.front() ? "middle" : "corner",
-        number_text(1e3 * error.place_m.x, 0), number_text(1e3 * error.place_m.y, 0),
-        error.place_m.z, 2 * error.light_mm, 2 * error.whole_mm);
-  return "<figure class='broad'><div class='wide'><table><thead><tr><th>place</th><th>right mm</th>"
-         "<th>down mm</th><th>far m</th><th>light ± mm</th><th>space ± mm</th></tr></thead>"
-         "<tbody>" +
-         rows +
-         "</tbody></table></div><figcaption>What the fit does not know, two standard deviations: "
-         "how far light lands beside its target, and how far off the place is in space. Places are "
-         "those of the camera's axes.</figcaption></figure>";
+/// How well light is placed in the middle and at the corners of the volume: a table.
+Picture places_of(const calib::TrackerFit& fit) {
+  Picture picture{"places",
+                  "What the fit does not know, two standard deviations: how far light lands beside "
+                  "its target, and how far off the place is in space. Places are those of the "
+                  "camera's axes; the first one is the middle of the volume, the others are its "
+                  "corners."};
+  for (const auto& [place_m, light_mm, whole_mm] : fit.place_errors) {
+    picture.numbers["right_mm"].push_back(1e3 * place_m.x);
+    picture.numbers["down_mm"].push_back(1e3 * place_m.y);
+    picture.numbers["far_m"].push_back(place_m.z);
+    picture.numbers["light_mm"].push_back(2 * light_mm);
+    picture.numbers["space_mm"].push_back(2 * whole_mm);
+  }
+  return picture;
 }
 
 std::string made_of(const calib::TrackerFit& fit) {
@@ -185,9 +168,9 @@ Result<Outcome> measure_tracker(Desk& desk) {
       "2 mm. Clock: how much the tracker's is ahead of the camera's";
   const auto& camera = desk.draft.camera;
   if (!seen_px.empty())
-    outcome.pictures = dots_svg(camera.width_px, camera.height_px, seen_px,
-                                "Where the hand was seen, near and far.");
-  outcome.pictures += errors_table(*found);
+    outcome.pictures.push_back(dots_picture(camera.width_px, camera.height_px, seen_px,
+                                            "Where the hand was seen, near and far."));
+  outcome.pictures.push_back(places_of(*found));
   return outcome;
 }
 

@@ -4,13 +4,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "renderer/media/picture.hpp"
-#include "services/tools/preview/live.hpp"
+#include "renderer/window/window.hpp"
+#include "services/tools/preview/keys.hpp"
 #include "services/tools/preview/options.hpp"
 #include "services/tools/preview/rig_feed.hpp"
 
@@ -31,6 +36,105 @@ Result<void> shoot(const Options& options) {
   const auto picture = draw(feed->scene(), feed->gauges(), options.look);
   return renderer::write_png(options.shot, picture.view());
 }
+
+#ifdef HANDCAST_WITH_WINDOW
+constexpr std::int64_t kNote_ns = 3'000'000'000;  ///< how long a note is shown
+/// Pause after a drawing, as a multiple of its duration: drawing takes a third of a core at most,
+/// and less if the machine is busy.
+constexpr std::int64_t kRest = 2;
+
+/// Does not run destructors: there is nothing to close, and the display is gone.
+void give_up() {
+  fmt::print(stderr, "handcast preview: the display server is gone\n");
+  std::_Exit(kExitRetry);
+}
+
+Result<std::unique_ptr<renderer::Window>> open_window(const std::string& rig, const Look& look) {
+  renderer::WindowSettings settings;
+  settings.title = "handcast " + rig;
+  settings.width_px = look.width_px;
+  settings.height_px = look.height_px;
+  settings.vsync = false;  // the pace is that of the reads
+  settings.when_display_is_lost = give_up;
+  auto window = renderer::Window::open(std::move(settings));
+  if (!window) window.error().what += "; use --shot FILE.png for a picture without a window";
+  return window;
+}
+
+/// The first name that no file has: preview-1.png and so on.
+std::filesystem::path free_name() {
+  for (int number = 1;; ++number)
+    if (auto file = fmt::format("preview-{}.png", number); !std::filesystem::exists(file))
+      return file;
+}
+
+std::string save(const renderer::Texture& picture) {
+  const auto file = free_name();
+  const auto saved = renderer::write_png(file, picture.view());
+  return saved ? "saved " + file.string() : saved.error().what;
+}
+
+/// The window with what it shows.
+class Show {
+ public:
+  Show(RigFeed& feed, renderer::Window& window, const Look& look)
+      : feed_(feed), window_(window), look_(look) {}
+
+  /// Reads once; draws and obeys if it is time. Returns false if the user ends.
+  Result<bool> turn() {
+    if (auto well = feed_.look(); !well) return tl::make_unexpected(well.error());
+    const auto begin_ns = now_ns();
+    if (begin_ns < next_draw_ns_) return true;
+    const bool goes_on = redraw();
+    next_draw_ns_ = now_ns() + kRest * (now_ns() - begin_ns);
+    return goes_on;
+  }
+
+ private:
+  bool redraw() {
+    if (!look_.frozen) {
+      scene_ = feed_.scene();
+      gauges_ = feed_.gauges();
+    }
+    if (now_ns() > note_until_ns_) look_.note.clear();
+    look_.width_px = window_.width_px();
+    look_.height_px = window_.height_px();
+    const auto picture = draw(scene_, gauges_, look_);
+    (void)window_.show(picture.view(), {0, 0, picture.width(), picture.height()});
+    for (const auto& key : window_.take_keys()) {
+      const auto wish = obey(key, look_);
+      if (wish == Wish::quit) return false;
+      if (wish != Wish::shot) continue;
+      look_.note = save(picture);
+      note_until_ns_ = now_ns() + kNote_ns;
+    }
+    return !window_.is_closed();
+  }
+
+  RigFeed& feed_;
+  renderer::Window& window_;
+  Look look_;
+  Scene scene_;
+  Gauges gauges_;
+  std::int64_t note_until_ns_ = 0, next_draw_ns_ = 0;
+};
+
+/// Shows a rig in a window until the user ends it. Call it on the main thread. Errors: those of
+/// RigFeed, unavailable (no display, or no OpenGL).
+Result<void> show_live(const Options& options) {
+  auto feed = RigFeed::open(options.rig);
+  if (!feed) return tl::make_unexpected(std::move(feed.error()));
+  auto window = open_window(feed->rig(), options.look);
+  if (!window) return tl::make_unexpected(std::move(window.error()));
+  Show show(*feed, **window, options.look);
+  for (auto next_ns = now_ns();; next_ns = std::max(next_ns + RigFeed::kPeriod_ns, now_ns())) {
+    sleep_until_ns(next_ns);
+    const auto goes_on = show.turn();
+    if (!goes_on) return tl::make_unexpected(goes_on.error());
+    if (!*goes_on) return {};
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace handcast::preview

@@ -13,7 +13,7 @@ sys.path.insert(0, str(REPOSITORY / "scripts"))
 
 PATIENCE_S = 120  # ends what hangs
 # What a page must not have that needs no network: addresses of others, and scripts. An xmlns in an embedded picture is none.
-OUTSIDE = re.compile(r"<script|<link|@import|url\(|(src|href|srcset)=[\"'](?!data:)", re.IGNORECASE)
+OUTSIDE = re.compile(r"<script|<link|@import|url\(|(src|href|srcset)=[\"'](?!data:|#)", re.IGNORECASE)
 
 
 def program(verb):

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Corners that are dragged with the mouse, on a real X server.
-#include "services/tools/calibrate/drag_window.hpp"
-
 #include <gtest/gtest.h>
 
 #include "ipc/base/clock.hpp"

@@ -34,7 +34,7 @@ class HandOver : public testing::Test {
     auto session = open();
     auto measured = session.draft();
     measured.camera.fx_px = fx_px;
-    ASSERT_TRUE(session.keep(step, {"measured", true, {}, "", std::move(settings)}, measured));
+    ASSERT_TRUE(session.keep(step, {"measured", true, {}, {}, std::move(settings)}, measured));
   }
   /// What the call prints.
   std::string call(bool apply) {

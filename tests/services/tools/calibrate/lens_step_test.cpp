@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/calibrate/lens_step.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include "tests/scratch.hpp"
 
 namespace handcast::calibrate {
 namespace {
+
+using testing::HasSubstr;
 
 TEST(LensMemory, GivesTheCovarianceOfTheLensThatWasMeasuredLast) {
   const test::Scratch scratch;
@@ -37,6 +39,14 @@ TEST(LensMemory, APipeInItsPlaceIsNotWaitedFor) {
   const test::Scratch scratch;
   ASSERT_EQ(::mkfifo((scratch.path() / "lens.covariance").c_str(), 0600), 0);
   EXPECT_FALSE(recall_lens(scratch.path(), "lens", calib::reference_rig().camera));
+}
+
+TEST(LensAdvice, NearTheEndItSaysWhatIsMissing) {
+  EXPECT_THAT(lens_advice(0, 15, "x"), HasSubstr("Hold the board still"));
+  EXPECT_EQ(lens_advice(9, 15, "Hold it there."), "Hold it there.");
+  EXPECT_EQ(lens_advice(15, 15, "Hold it there."), "Almost done: Hold it there.");
+  EXPECT_THAT(lens_advice(9, 15, ""), HasSubstr("6 more images"));
+  EXPECT_THAT(lens_advice(14, 15, ""), HasSubstr("one more image"));
 }
 
 }  // namespace

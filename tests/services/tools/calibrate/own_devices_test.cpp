@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/calibrate/own_devices.hpp"
-
 #include <gtest/gtest.h>
+
+#include "services/tools/calibrate/rig_settings.hpp"
 
 namespace handcast::calibrate {
 namespace {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "config/settings/files.hpp"
 #include "tests/scratch.hpp"
@@ -32,6 +33,9 @@ class CalibrateSession : public testing::Test {
     return measured;
   }
   std::string text_of(const fs::path& file) const { return *config::read_text(file); }
+  std::string report_of(const Session& session) const {
+    return text_of(session.file("report.json"));
+  }
 
   test::Scratch scratch_;
   Options options_;
@@ -52,51 +56,55 @@ TEST_F(CalibrateSession, GoesOnWhereItWasLeft) {
 TEST_F(CalibrateSession, AMeasurementThatIsNotGoodChangesNothing) {
   ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, with_focal_length(1200)));
   auto session = open();
-  const auto report = text_of(session.report());
+  const auto report = report_of(session), lens = text_of(session.file("lens.json"));
   const auto kept = session.keep(Step::lens, {"2 images", false}, with_focal_length(900));
   ASSERT_FALSE(kept);
   EXPECT_THAT(kept.error().what, HasSubstr("measure it again"));
   EXPECT_EQ(session.draft().camera.fx_px, 1200);
   EXPECT_EQ(open().draft().camera.fx_px, 1200);
-  EXPECT_EQ(text_of(session.report()), report);
+  EXPECT_EQ(report_of(session), report);
+  EXPECT_EQ(text_of(session.file("lens.json")), lens);
 }
 
-TEST_F(CalibrateSession, AMeasurementIsKeptAlthoughItsPicturesCannotBeWritten) {
-  fs::create_directories(options_.folder / "lens.html" / "a folder in its place");
+TEST_F(CalibrateSession, AMeasurementIsKeptAlthoughItsFindingsCannotBeWritten) {
+  fs::create_directories(options_.folder / "lens.json" / "a folder in its place");
   const auto kept = open().keep(Step::lens, {"20 images"}, with_focal_length(1200));
   ASSERT_FALSE(kept);
-  EXPECT_THAT(kept.error().what, HasSubstr("lens.html"));
+  EXPECT_THAT(kept.error().what, HasSubstr("lens.json"));
   EXPECT_EQ(open().draft().camera.fx_px, 1200);
 }
 
 TEST_F(CalibrateSession, OldFiguresDoNotStandUnderANewMeasurement) {
   ASSERT_TRUE(open().keep(Step::lens, {"20 images"}, with_focal_length(1200)));
   Outcome large{"30 images"};
-  large.pictures.assign(1'000'000, ' ');
+  large.pictures = {{"dots", "", {{"x", std::vector<double>(100'000, 0.5)}}}};
   {
     const test::SmallFiles full(100'000);
     EXPECT_FALSE(open().keep(Step::lens, large, with_focal_length(1300)));
   }
   EXPECT_EQ(open().draft().camera.fx_px, 1300);
   auto session = open();
+  EXPECT_FALSE(fs::exists(session.file("lens.json")));
   ASSERT_TRUE(session.keep(Step::light, {"bright"}, session.draft()));
-  EXPECT_THAT(text_of(session.report()), HasSubstr("30 images"));
-  EXPECT_THAT(text_of(session.report()), Not(HasSubstr("20 images")));
+  EXPECT_THAT(report_of(session), HasSubstr("30 images"));
+  EXPECT_THAT(report_of(session), Not(HasSubstr("20 images")));
 }
 
 TEST_F(CalibrateSession, TheReportGoesOnWithItsBoardAndItsFolder) {
-  const auto command_of = [&] {
+  const auto report = [&] {
     auto session = open();
     EXPECT_TRUE(session.keep(Step::lens, {"20 images"}, used_));
-    const auto page = text_of(session.report());
-    const auto at = page.find("Go on with");
-    return page.substr(at, page.find("</p>", at) - at);
+    return nlohmann::json::parse(report_of(session));
   };
-  EXPECT_THAT(command_of(), HasSubstr("rig.toml</code>"));
+  const auto usual = report();
+  EXPECT_EQ(usual["rig_file"], options_.rig_file.string());
+  EXPECT_EQ(usual["board"], "");
+  EXPECT_EQ(usual["folder"], "");
   options_.board.square_mm = 25;
   options_.folder = scratch_.path() / "other";
-  EXPECT_THAT(command_of(), HasSubstr("rig.toml --board charuco:11x8:25 --folder " +
-                                      options_.folder.string() + "</code>"));
+  const auto other = report();
+  EXPECT_EQ(other["board"], "charuco:11x8:25");
+  EXPECT_EQ(other["folder"], options_.folder.string());
 }
 
 TEST_F(CalibrateSession, ADamagedDraftIsRefusedWithTheWayOut) {
@@ -117,7 +125,8 @@ TEST_F(CalibrateSession, ANewLensForgetsWhatWasMeasuredWithTheOld) {
   EXPECT_TRUE(session.is_done(Step::screen));
   ASSERT_TRUE(session.keep(Step::lens, {"three"}, used_));
   EXPECT_FALSE(session.is_done(Step::screen));
-  EXPECT_THAT(text_of(session.report()), Not(HasSubstr("two")));
+  EXPECT_THAT(report_of(session), Not(HasSubstr("two")));
+  EXPECT_FALSE(fs::exists(session.file("screen.json")));
 }
 
 TEST_F(CalibrateSession, TheSecondCamerasPlaceStandsOnBothLensesAndTheScreenOnTheFirst) {
@@ -126,7 +135,7 @@ TEST_F(CalibrateSession, TheSecondCamerasPlaceStandsOnBothLensesAndTheScreenOnTh
   auto session = open();
   for (const Step step : {Step::lens, Step::lens2, Step::pair, Step::screen})
     ASSERT_TRUE(session.keep(step, {"measured"}, session.draft()));
-  EXPECT_THAT(text_of(session.report()), HasSubstr("<h2>Place of the second camera"));
+  EXPECT_TRUE(fs::exists(session.file("pair.json")));
   ASSERT_TRUE(session.keep(Step::lens2, {"again"}, session.draft()));
   EXPECT_FALSE(session.is_done(Step::pair));
   EXPECT_TRUE(session.is_done(Step::screen));
@@ -166,13 +175,14 @@ TEST_F(CalibrateSession, ADraftOfAnotherSecondCameraIsRefused) {
   EXPECT_THAT(Session::open(options_, rig_, used_).error().what, HasSubstr("second camera"));
 }
 
-TEST_F(CalibrateSession, TheReportHasTheFindingsOfEachStep) {
+TEST_F(CalibrateSession, TheFindingsOfEachStepAreKeptForTheReport) {
   auto session = open();
-  ASSERT_TRUE(session.keep(Step::lens, {"20 images", true, {"tilt <more>"}, "<svg></svg>"}, used_));
-  const auto page = text_of(session.report());
-  EXPECT_THAT(page, HasSubstr("Tilt &lt;more&gt;"));
-  EXPECT_THAT(page, HasSubstr("<svg></svg>"));
-  EXPECT_THAT(page, HasSubstr("not measured yet"));
+  ASSERT_TRUE(session.keep(Step::lens, {"20 images", true, {"tilt more"}}, used_));
+  EXPECT_THAT(text_of(session.file("lens.json")), HasSubstr("tilt more"));
+  const auto steps = nlohmann::json::parse(report_of(session))["steps"];
+  EXPECT_EQ(steps[0]["step"], "lens");
+  EXPECT_EQ(steps[0]["is_done"], true);
+  EXPECT_EQ(steps[1]["is_done"], false);
 }
 
 TEST_F(CalibrateSession, TheOldCalibrationIsKept) {
@@ -247,7 +257,7 @@ TEST_F(CalibrateSession, SettingsAreKeptUntilTheyAreMeasuredAnewOrForgotten) {
     return text;
   };
   const auto with = [](std::vector<config::MeasuredSetting> settings) {
-    return Outcome{"measured", true, {}, "", std::move(settings)};
+    return Outcome{"measured", true, {}, {}, std::move(settings)};
   };
   ASSERT_TRUE(open().keep(Step::light, with({{"projector.latency_ms", "3"}}), used_));
   ASSERT_TRUE(open().keep(
@@ -296,7 +306,7 @@ TEST_F(CalibrateSession, AFolderThatCannotBeReadIsNamed) {
 TEST_F(CalibrateSession, TheReportNamesNoStepThatTheRigHasNoNeedOf) {
   const auto page_of = [&] {
     EXPECT_TRUE(open().keep(Step::lens, {"20 images"}, used_));
-    return text_of(open().report());
+    return report_of(open());
   };
   EXPECT_THAT(page_of(), HasSubstr("tracker"));
   EXPECT_THAT(page_of(), Not(HasSubstr("pair")));

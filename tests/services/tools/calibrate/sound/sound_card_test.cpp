@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/tools/calibrate/sound/recorder.hpp"
 #include "tests/services/tools/calibrate/sound/emulated_sound_card.hpp"
 
 namespace handcast::calibrate {
