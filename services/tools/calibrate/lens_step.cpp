@@ -7,12 +7,12 @@
 #include <cmath>
 #include <sstream>
 
-#include "calib/solve/board/board_finder.hpp"
 #include "calib/solve/lens/auto_capture.hpp"
 #include "calib/solve/lens/coverage.hpp"
 #include "calib/solve/lens/lens_fit.hpp"
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/write_whole.hpp"
+#include "services/tools/calibrate/board_watch.hpp"
 #include "services/tools/calibrate/steps.hpp"
 
 namespace handcast::calibrate {
@@ -46,7 +46,7 @@ Result<std::vector<calib::BoardView>> take_views(Desk& desk, const Ring& ring,
                                                  const calib::CameraModel& camera) {
   auto frames = client::open_stream<msg::CameraFrame>(desk.rig.name, ring.stream);
   if (!frames) return tl::make_unexpected(frames.error());
-  const calib::BoardFinder finder(desk.options.board);
+  BoardWatch board(desk.options.board);
   calib::Coverage coverage(camera.width_px, camera.height_px);
   calib::AutoCapture capture(camera.width_px);
   std::vector<calib::BoardView> views;
@@ -54,14 +54,18 @@ Result<std::vector<calib::BoardView>> take_views(Desk& desk, const Ring& ring,
   while ((coverage.share() < 1 || views.size() < kEnoughViews) && progress.goes_on()) {
     const double views_share = static_cast<double>(views.size()) / kEnoughViews;
     progress.show(std::min({0.99, coverage.share(), views_share}),
-                  lens_advice(views.size(), kEnoughViews, coverage.advice()));
+                  board.why_missing().empty()
+                      ? lens_advice(views.size(), kEnoughViews, coverage.advice())
+                      : board.why_missing());
     const auto frame = progress.latest(*frames);
     if (!frame) continue;
-    auto seen = finder.find(view_of(**frame));
+    auto seen = board.find(view_of(**frame));
     if (!seen || !capture.take((*frame)->header.origin_ns, *seen)) continue;
     coverage.add(*seen);
     views.push_back(std::move(*seen));
   }
+  if (progress.result() && views.empty() && !board.why_missing().empty())
+    return fail(Errc::bad_data, "the board was never seen: " + board.why_missing());
   return progress.result().map([&] { return std::move(views); });
 }
 
@@ -78,7 +82,8 @@ std::vector<Picture> pictures_of(const calib::LensFit& fit,
                          "How far the corners of each image are from where the lens has them.")};
 }
 
-Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views) {
+Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> views,
+                   calib::BoardKind kind) {
   Outcome outcome;
   const auto& focal = fit.spreads[0];
   const double focal_error = (focal.high - focal.low) / 2 / fit.camera.fx_px;
@@ -98,6 +103,11 @@ Outcome outcome_of(const calib::LensFit& fit, std::span<const calib::BoardView> 
       "good is at most {} px. +-: with 95 % probability the focal length is within; good is at "
       "most {:g} %",
       kGood_px, 100 * kGoodFocal);
+  if (kind != calib::BoardKind::charuco)
+    outcome.meaning +=
+        ". This board looks the same in a mirror: if a half mirror or the camera mirrors the "
+        "image, "
+        "only a charuco board shows it";
   outcome.pictures = pictures_of(fit, views);
   return outcome;
 }
@@ -111,7 +121,7 @@ Result<Outcome> measure(Desk& desk, const Ring& ring, calib::CameraModel& camera
   const auto fit = calib::fit_lens(*views, camera.width_px, camera.height_px);
   if (!fit) return tl::make_unexpected(fit.error());
   camera = fit->camera;
-  auto outcome = outcome_of(*fit, *views);
+  auto outcome = outcome_of(*fit, *views, desk.options.board.kind);
   if (!outcome.is_good) return outcome;
   return remember_lens(desk.options.folder, ring.step, *fit).map([&] { return outcome; });
 }

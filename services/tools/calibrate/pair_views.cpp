@@ -11,6 +11,7 @@
 #include "calib/solve/lens/board_pose.hpp"
 #include "calib/solve/pair/pair_off.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "services/tools/calibrate/board_watch.hpp"
 #include "services/tools/calibrate/lens_step.hpp"
 #include "services/tools/calibrate/pair_step.hpp"
 
@@ -52,7 +53,8 @@ class PairViews {
       : camera_(desk.draft.camera),
         second_camera_(*desk.draft.camera2),
         wanted_(wanted),
-        finder_(desk.options.board),
+        board_(desk.options.board),
+        second_board_(desk.options.board),
         capture_(camera_.width_px) {}
 
   /// Looks at an image of the first camera and at the one of the second camera that was taken with
@@ -62,7 +64,8 @@ class PairViews {
     const auto other = image_at(second_frames, time_ns);
     if (!other && other.error().code != Errc::timeout) return tl::make_unexpected(other.error());
     if (!other) return {};
-    auto first = finder_.find(view_of(image)), second = finder_.find(view_of(**other));
+    auto first = board_.find(view_of(image));
+    auto second = second_board_.find(view_of(**other));
     sees_first_ = first.has_value();
     sees_second_ = second.has_value();
     // Both must look each time.
@@ -85,7 +88,9 @@ class PairViews {
     return std::min(0.99, static_cast<double>(views_.size()) / static_cast<double>(enough));
   }
   std::string advice() const {
-    if (!sees_first_ && !sees_second_) return "Hold the board where both cameras see it, still";
+    if (!sees_first_ && !sees_second_)
+      return board_.why_missing().empty() ? "Hold the board where both cameras see it, still"
+                                          : board_.why_missing();
     if (!sees_first_) return "Only the second camera sees the board; hold it before the first, too";
     if (!sees_second_)
       return "Only the first camera sees the board; hold it before the second, too";
@@ -118,7 +123,8 @@ class PairViews {
   calib::CameraModel camera_;
   calib::SecondCamera second_camera_;
   PairWanted wanted_;
-  calib::BoardFinder finder_;
+  BoardWatch board_;
+  calib::BoardFinder second_board_;
   calib::AutoCapture capture_;
   calib::Stillness first_, second_;
   std::vector<calib::PairView> views_;

@@ -32,7 +32,7 @@ ScreenViews::ScreenViews(Desk& desk, client::Stream<msg::CameraFrame> frames,
     : desk_(desk),
       frames_(std::move(frames)),
       patterns_(patterns),
-      finder_(desk.options.board),
+      board_(desk.options.board),
       code_(desk.screen.width_px(), desk.screen.height_px()),
       capture_(desk.used.camera.width_px),
       seen_(desk.used.camera.width_px, desk.used.camera.height_px) {}
@@ -45,7 +45,7 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
   std::string failed = "the board was never still in the projector's light";
   while (views.size() < wanted && progress_->goes_on()) {
     begun_ = of_each_ * static_cast<double>(views.size());
-    progress_->show(begun_, advice);
+    progress_->show(begun_, board_.why_missing().empty() ? advice : board_.why_missing());
     if (!is_ready()) continue;
     auto view = measure_twice();
     if (!view && view.error().code != Errc::bad_data) return tl::make_unexpected(view.error());
@@ -62,8 +62,8 @@ Result<std::vector<calib::DepthView>> ScreenViews::take(std::size_t wanted) {
   const auto done = progress_->result();
   progress_.reset();
   if (!done) return tl::make_unexpected(done.error());
-  if (views.empty()) return fail(Errc::bad_data, failed);
-  return views;
+  if (!views.empty()) return views;
+  return fail(Errc::bad_data, board_.why_missing().empty() ? failed : board_.why_missing());
 }
 
 /// All patterns once more if they could not be read.
@@ -77,7 +77,7 @@ Result<calib::DepthView> ScreenViews::measure_twice() {
 /// True if the next image has the board, still and at a new place.
 bool ScreenViews::is_ready() {
   const auto frame = progress_->latest(frames_);
-  const auto board = frame ? finder_.find(calibrate::view_of(**frame)) : std::nullopt;
+  const auto board = frame ? board_.find(calibrate::view_of(**frame)) : std::nullopt;
   return board && capture_.take((*frame)->header.origin_ns, *board);
 }
 
@@ -160,8 +160,8 @@ Result<calib::DepthView> ScreenViews::measure() {
   if (!shot) return tl::make_unexpected(shot.error());
   auto& images = *shot;
   const auto& camera = desk_.draft.camera;
-  const auto before = finder_.find(view_of(images.front())),
-             after = finder_.find(view_of(images.back()));
+  const auto before = board_.find(view_of(images.front())),
+             after = board_.find(view_of(images.back()));
   if (!before || !after) return fail(Errc::bad_data, "The whole board must be in the light");
   if (!(largest_move_px(*before, *after) < kMoved_px))
     return fail(Errc::bad_data, "The board moved: hold it still");

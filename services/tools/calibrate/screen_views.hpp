@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "calib/image_fields.hpp"
-#include "calib/solve/board/board_finder.hpp"
 #include "calib/solve/lens/auto_capture.hpp"
 #include "calib/solve/screen/gray_code.hpp"
 #include "calib/solve/screen/screen_fit.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "services/tools/calibrate/board_watch.hpp"
 #include "services/tools/calibrate/pattern_images.hpp"
 
 namespace handcast::calibrate {
@@ -57,7 +57,7 @@ class ScreenViews {
   Desk& desk_;
   client::Stream<msg::CameraFrame> frames_;
   PatternImages& patterns_;
-  calib::BoardFinder finder_;
+  BoardWatch board_;
   calib::GrayCode code_;
   calib::AutoCapture capture_;
   calib::ImageFields seen_;
