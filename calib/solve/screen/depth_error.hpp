@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "calib/projector_model.hpp"
+#include "calib/calibration.hpp"
 
 namespace handcast::calib {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "calib/projector_model.hpp"
+#include "calib/calibration.hpp"
 #include "calib/solve/screen/correspondence.hpp"
 
 /// Least squares for ProjectorModel, which the fits of this folder share.

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "calib/projector_model.hpp"
+#include "calib/calibration.hpp"
 #include "calib/solve/screen/gray_code.hpp"
 #include "calib/solve/screen/screen_fit.hpp"
 
