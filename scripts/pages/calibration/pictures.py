@@ -105,7 +105,7 @@ def draw_gamma(numbers, colours):
     panel.axes.plot([255 * level for level in numbers["level"]], numbers["share"], "o", color=colours["ours"], markersize=5,
                     markeredgecolor=colours["panel"], markeredgewidth=0.7, zorder=5)
     picture.text(10, 18, "light", "quiet", "left", 12)
-    for x_px, words, colour in ((WIDTH_PX - 168, "measured", "ours"), (WIDTH_PX - 106, "fitted", "ink"), (WIDTH_PX - 12, "rig's setting", "quiet")):
+    for x_px, words, colour in ((WIDTH_PX - 190, "measured", "ours"), (WIDTH_PX - 124, "fitted", "ink"), (WIDTH_PX - 12, "rig's setting", "quiet")):
         picture.text(x_px, 18, words, colour, "right", 12, True)
     panel.name_x("level", 34)
     return picture
