@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "calib/least_squares/normal_equations.hpp"
 #include "calib/solve/screen/correspondence.hpp"
 #include "calib/solve/screen/screen_model.hpp"
 
@@ -46,11 +46,6 @@ class Replicas {
   /// Nothing if these blocks do not determine the model. `weights`: one for each block.
   std::optional<ScreenModel> with_weights(std::span<const double> weights) const;
 
-  /// Normal equations of the observations of a block.
-  struct Sums {
-    std::array<double, 11 * 11> normal{};
-    std::array<double, 11> right{};
-  };
   /// The fit is computed with centred and scaled coordinates (Hartley 1997).
   struct Scaling {
     glm::dmat3 camera{1}, projector{1};
@@ -61,7 +56,7 @@ class Replicas {
   ScreenModel best_;
   Unknowns unknowns_;
   Scaling scaling_;
-  std::vector<Sums> blocks_;
+  std::vector<NormalEquations> blocks_;
 };
 
 }  // namespace handcast::calib

@@ -9,6 +9,7 @@
 
 #include "calib/solve/screen/depth_error.hpp"
 #include "ipc/base/number_text.hpp"
+#include "ipc/base/statistics.hpp"
 #include "services/tools/calibrate/by_hand.hpp"
 #include "services/tools/calibrate/delay_report.hpp"
 #include "services/tools/calibrate/gamma_step.hpp"
@@ -136,12 +137,6 @@ Result<Outcome> measure_screen(Desk& desk) {
 }
 
 constexpr double kUnmoved_px = 0.7;  ///< structured light on one board is right within 0.2 px
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// By how many projector pixels the calibration is off on a board.
 struct Off {

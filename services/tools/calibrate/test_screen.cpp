@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ipc/base/statistics.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "services/tools/calibrate/text_page.hpp"
 
@@ -16,14 +17,6 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kRepeatEvery_ns = 250'000'000;
 constexpr std::size_t kPeriods = 31;  ///< whose median is the rhythm of the frames
-
-std::int64_t median_of(const std::deque<std::int64_t>& times_ns) {
-  if (times_ns.empty()) return 0;
-  std::vector<std::int64_t> sorted(times_ns.begin(), times_ns.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
-  return *middle;
-}
 
 }  // namespace
 
@@ -100,7 +93,7 @@ Result<FirstLight> TestScreen::first_light(Deadline deadline) {
       deadline = Deadline::in(kStart);  // the picture may have expired meanwhile
     const bool is_sure = follow(**shown);
     if ((*shown)->test_picture == number_)
-      return FirstLight{(*shown)->lit_ns, median_of(periods_ns_), is_sure};
+      return FirstLight{(*shown)->lit_ns, median(periods_ns_), is_sure};
     keep();
   }
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calibrate {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr int kSaturated = 250;
 constexpr int kDarkTips = 41, kGoodTips = 60;
 constexpr double kMostSaturated = 0.01, kLeastRatio = 2, kMostFlicker = 0.02;
 constexpr double kMostLeak = 0.1;  ///< of the hand's brightness
-constexpr double kSigmaPerMad = 1.4826;
 
 constexpr int kWrist = 0, kMiddleKnuckle = 9;
 constexpr bool is_tip(int landmark) { return landmark > 0 && landmark % 4 == 0; }
@@ -177,9 +178,7 @@ double HandLight::flicker() const {
     if (means_[i].lighting == means_[i - 1].lighting && means_[i].grey > 0)
       changes.push_back(std::abs(means_[i].grey - means_[i - 1].grey) / means_[i].grey);
   if (changes.size() < kEnough) return 0;
-  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-  std::ranges::nth_element(changes, middle);
-  return kSigmaPerMad * *middle / std::sqrt(2.0);
+  return kSigmaPerMad * median(std::move(changes)) / std::sqrt(2.0);
 }
 
 double HandLight::leak() const {
