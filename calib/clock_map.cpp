@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -76,9 +77,7 @@ double ClockMap::median_distance_s() const {
   std::vector<double> distances_s;
   for (const auto& point : points_)
     distances_s.push_back(std::abs(point.delay_s - line_at(point.device_s)));
-  const auto middle = distances_s.begin() + static_cast<std::ptrdiff_t>((points_.size() - 1) / 2);
-  std::nth_element(distances_s.begin(), middle, distances_s.end());
-  return *middle;
+  return ranked(std::move(distances_s), (points_.size() - 1) / 2);
 }
 
 /// The slope is that of the half of the points that lie lowest (least trimmed squares, in a few

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -82,16 +84,12 @@ std::vector<Offset> offsets_of(const Calibration& calibration, const HeldHand& h
 }
 
 glm::dvec2 median_of(const std::vector<Offset>& offsets) {
-  glm::dvec2 median(0);
-  for (int axis = 0; axis < 2; ++axis) {
-    std::vector<double> values;
-    values.reserve(offsets.size());
-    for (const auto& offset : offsets) values.push_back(offset.px[axis]);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    median[axis] = *middle;
+  std::vector<double> right_px, down_px;
+  for (const auto& offset : offsets) {
+    right_px.push_back(offset.px.x);
+    down_px.push_back(offset.px.y);
   }
-  return median;
+  return {median(std::move(right_px)), median(std::move(down_px))};
 }
 
 /// How a landmark moves in the image by each unknown, px.

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::projector {
 
 /// The median of the last 31 times, which a single slow frame does not change.
@@ -18,10 +20,7 @@ class RecentTimes {
   /// Adds a time.
   void add(std::int64_t time_ns) {
     recent_ns_[count_++ % recent_ns_.size()] = time_ns;
-    auto sorted = recent_ns_;
-    const auto middle = sorted.begin() + sorted.size() / 2;
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    median_ns_ = *middle;
+    median_ns_ = median(recent_ns_);
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calib/solve/board/find.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -13,17 +14,9 @@ namespace {
 constexpr double kDark = 0.005, kBright = 0.03;
 constexpr int kSmallestImage_px = 32;
 
-/// The grey value that this share of the pixels is below.
-float quantile(std::vector<float>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(values.size() - 1) * share);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 cv::Mat1b stretched(const cv::Mat1f& image) {
   constexpr float kLeastRange = 1e-3F;
-  std::vector<float> values(image.begin(), image.end());
+  const std::vector<float> values(image.begin(), image.end());
   const float low = quantile(values, kDark), high = quantile(values, 1 - kBright);
   const double gain = 255 / std::max(high - low, kLeastRange);
   cv::Mat1b result;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "calib/solve/board/find.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -135,12 +136,10 @@ void erase_covered(const Board& board, const cv::Mat1b& image, std::vector<Found
   std::vector<double> contrasts;
   for (std::size_t i = 0; i < found.size(); ++i)
     contrasts.push_back(contrast_at(image, map, found[i], squares[i]));
-  auto sorted = contrasts;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::ranges::nth_element(sorted, middle);
+  const double least = kLeastContrast * std::max(median(contrasts), 0.);
   std::vector<Found> kept;
   for (std::size_t i = 0; i < found.size(); ++i)
-    if (contrasts[i] > kLeastContrast * std::max(*middle, 0.)) kept.push_back(found[i]);
+    if (contrasts[i] > least) kept.push_back(found[i]);
   found = std::move(kept);
 }
 

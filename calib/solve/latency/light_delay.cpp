@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -28,8 +30,7 @@ using Curve = std::vector<double>;
 double contrast_of(std::span<const Brightness> images) {
   std::vector<double> greys;
   for (const auto& image : images) greys.push_back(image.grey);
-  std::ranges::sort(greys);
-  return greys[greys.size() - 1 - greys.size() / 10] - greys[greys.size() / 10];
+  return quantile(greys, 0.9) - quantile(greys, 0.1);
 }
 
 /// The images between the middles of the times before and after toggle `i`, in which nothing but
@@ -113,9 +114,7 @@ void add(Curve& sum, const Curve& curve) {
 double median_error_ms(std::span<const Brightness> images) {
   std::vector<std::int64_t> errors_ns;
   for (const auto& image : images) errors_ns.push_back(image.error_ns);
-  const auto middle = errors_ns.begin() + static_cast<std::ptrdiff_t>(errors_ns.size() / 2);
-  std::ranges::nth_element(errors_ns, middle);
-  return ms_of(*middle);
+  return ms_of(median(std::move(errors_ns)));
 }
 
 /// Without the errors of the images' times.
@@ -131,11 +130,10 @@ LightDelay with_interval(std::span<const Curve> curves, double contrast) {
     for (std::size_t k = 0; k < curves.size(); ++k) add(sum, curves[any(random)]);
     delays.push_back(best_of(sum).middle_ms());
   }
-  std::ranges::sort(delays);
   const auto best = best_of(all);
-  return {best.middle_ms(), std::min(delays[kResamples / 40], best.first_ms) - kStep_ms,
-          std::max(delays[kResamples - 1 - kResamples / 40], best.last_ms) + kStep_ms,
-          best.last_ms - best.first_ms, contrast};
+  return {best.middle_ms(), std::min(quantile(delays, 0.025), best.first_ms) - kStep_ms,
+          std::max(quantile(delays, 0.975), best.last_ms) + kStep_ms, best.last_ms - best.first_ms,
+          contrast};
 }
 
 }  // namespace

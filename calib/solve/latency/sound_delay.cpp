@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <random>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -82,13 +84,6 @@ std::vector<Edge> edges_of(std::span<const Toggle> toggles, const SoundClip& cli
   return edges;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 template <class Member>
 double median_of(std::span<const Edge> edges, Member member) {
   std::vector<double> values;
@@ -105,10 +100,8 @@ LightDelay with_interval(std::span<const Edge> edges, double error_ms) {
     for (auto& value : sample) value = edges[any(random)].delay_ms;
     medians.push_back(median(sample));
   }
-  std::ranges::sort(medians);
-  return {median_of(edges, &Edge::delay_ms), medians[kResamples / 40] - error_ms,
-          medians[kResamples - 1 - kResamples / 40] + error_ms, 0,
-          100 * median_of(edges, &Edge::step)};
+  return {median_of(edges, &Edge::delay_ms), quantile(medians, 0.025) - error_ms,
+          quantile(medians, 0.975) + error_ms, 0, 100 * median_of(edges, &Edge::step)};
 }
 
 double scatter_ms(std::span<const Edge> edges) {

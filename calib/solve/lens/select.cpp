@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "calib/solve/lens/coverage.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -40,12 +41,6 @@ std::string fault_of(const BoardView& view) {
   return {};
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void reject(Selection& selection, std::size_t i, std::string reason) {
   selection.reasons[selection.places[i]] = std::move(reason);
   selection.views.erase(selection.views.begin() + static_cast<std::ptrdiff_t>(i));
@@ -55,11 +50,10 @@ void reject(Selection& selection, std::size_t i, std::string reason) {
 }  // namespace
 
 double limit_px(const std::vector<double>& rms_px) {
-  constexpr double kDeviations = 1.4826;  // of a normal distribution, in median absolute deviations
   const double middle_px = median(rms_px);
   auto off_px = rms_px;
   for (double& px : off_px) px = std::abs(px - middle_px);
-  return std::max(middle_px + kOutlier * kDeviations * median(off_px), kOutlierFactor * middle_px);
+  return std::max(middle_px + kOutlier * kSigmaPerMad * median(off_px), kOutlierFactor * middle_px);
 }
 
 tl::unexpected<Error> too_few(std::size_t views) {

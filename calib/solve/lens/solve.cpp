@@ -4,46 +4,25 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 
-#include "calib/solve/lens/levenberg_marquardt.hpp"
+#include "calib/least_squares/levenberg_marquardt.hpp"
 #include "calib/solve/lens/normal.hpp"
 
 namespace handcast::calib {
 namespace {
 
-std::vector<Normal> normals_of(std::span<const Points> views, Distortion distortion,
-                               const Solution& at) {
-  std::vector<Normal> normals;
+PartEquations equations_at(std::span<const Points> views, Distortion distortion,
+                           const Solution& at) {
+  PartEquations equations{.own = kPoseNumbers};
   for (std::size_t i = 0; i < views.size(); ++i)
-    normals.push_back(normal_of(views[i], at.poses[i], at.camera, distortion));
-  return normals;
+    equations.add(normal_of(views[i], at.poses[i], at.camera, distortion));
+  return equations;
 }
 
-/// One step of Levenberg and Marquardt.
-Solution stepped(const Solution& from, std::vector<Normal> normals, double damping) {
-  Statement sum{};
-  for (auto& normal : normals) {
-    damp(normal.pose, damping);
-    damp(normal.lens, damping);
-    const auto statement = statement_of(normal);
-    sum.matrix += statement.matrix;
-    sum.slope += statement.slope;
-  }
-  const LensVector step = sum.matrix.solve(sum.slope, cv::DECOMP_CHOLESKY);
-  Solution to = from;
-  to.camera = camera_of(values_of(from.camera) + step, from.camera.width_px, from.camera.height_px);
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const auto moved = pose_step(normals[i], step);
-    to.poses[i].turn += cv::Vec3d(moved[0], moved[1], moved[2]);
-    to.poses[i].move += cv::Vec3d(moved[3], moved[4], moved[5]);
-  }
-  return to;
-}
-
-/// `camera` with the coefficients at 0 that the model lacks.
-CameraModel within(const CameraModel& camera, Distortion distortion) {
-  auto values = values_of(camera);
-  for (int i = free_parameters(distortion); i < values.rows; ++i) values[i] = 0;
-  return camera_of(values, camera.width_px, camera.height_px);
+Solution moved(Solution solution, const PartEquations::Step& step) {
+  for (Eigen::Index i = 0; i < step.shared.size(); ++i)
+    solution.camera.*kLensFields[static_cast<std::size_t>(i)] += step.shared[i];
+  for (std::size_t i = 0; i < solution.poses.size(); ++i) move(solution.poses[i], step.own[i]);
+  return solution;
 }
 
 }  // namespace
@@ -84,8 +63,7 @@ std::optional<Solution> first_guess(std::span<const Points> views, int width_px,
   Solution guess;
   try {
     const cv::Matx33d k = cv::initCameraMatrix2D(board_m, image_px, {width_px, height_px}, 0);
-    guess.camera =
-        camera_of({k(0, 0), k(1, 1), k(0, 2), k(1, 2), 0, 0, 0, 0, 0}, width_px, height_px);
+    guess.camera = {width_px, height_px, k(0, 0), k(1, 1), k(0, 2), k(1, 2)};
   } catch (const cv::Exception&) {  // of views that have no solution
     return {};
   }
@@ -103,14 +81,15 @@ std::optional<Solution> solve(std::span<const Points> views, Distortion distorti
                               const Solution& start) {
   constexpr Effort kEffort{100, 1e-7};
   Solution best = start;
-  best.camera = within(start.camera, distortion);
-  const auto normals = minimise(
-      best, kEffort, [&](const Solution& at) { return normals_of(views, distortion, at); },
-      stepped);
-  if (!(best.camera.fx_px > 0 && best.camera.fy_px > 0 && std::isfinite(squares_of(normals))))
-    return {};
+  for (int i = free_parameters(distortion); i < kLensNumbers; ++i)
+    best.camera.*kLensFields[static_cast<std::size_t>(i)] = 0;
+  const auto equations = minimise(
+      best, kEffort, [&](const Solution& at) { return equations_at(views, distortion, at); },
+      moved);
+  if (!(best.camera.fx_px > 0 && best.camera.fy_px > 0 && std::isfinite(equations.cost))) return {};
   for (std::size_t i = 0; i < views.size(); ++i)
-    best.rms_px[i] = std::sqrt(normals[i].squares / static_cast<double>(views[i].image_px.size()));
+    best.rms_px[i] =
+        std::sqrt(equations.parts[i].cost / static_cast<double>(views[i].image_px.size()));
   return best;
 }
 

@@ -35,9 +35,7 @@ struct Solution {
 std::optional<Solution> first_guess(std::span<const Points> views, int width_px, int height_px);
 
 /// The camera and the poses that fit best, in the sense of least squares: the minimum that OpenCV's
-/// calibrateCamera finds. By Levenberg and Marquardt, with the poses eliminated from the normal
-/// equations, so that the time grows with the number of views and not with its cube. `start`:
-/// nearly right. Nothing if the views do not determine the camera.
+/// calibrateCamera finds. `start`: nearly right. Nothing if the views do not determine the camera.
 std::optional<Solution> solve(std::span<const Points> views, Distortion distortion,
                               const Solution& start);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -11,37 +12,33 @@
 #include "calib/solve/lens/spread.hpp"
 #include "calib/solve/pair/corner_error.hpp"
 #include "calib/solve/pair/pair_solve.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
 
-constexpr int kLensNumbers = 9;
-using LensRoot = cv::Matx<double, kLensNumbers, kLensNumbers>;
+using LensMatrix = Eigen::Matrix<double, kLensNumbers, kLensNumbers>;
 
 /// A matrix that makes errors of this covariance of independent ones.
-LensRoot root_of(const LensCovariance& covariance) {
-  LensRoot matrix, directions;
+LensMatrix root_of(const LensCovariance& covariance) {
+  LensMatrix matrix;
   for (int i = 0; i < kLensNumbers; ++i)
     for (int j = 0; j < kLensNumbers; ++j)
       matrix(i, j) = covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-  cv::Vec<double, kLensNumbers> variances;
-  cv::eigen(matrix, variances, directions);
-  LensRoot root = directions.t();
-  for (int i = 0; i < kLensNumbers; ++i)
-    for (int j = 0; j < kLensNumbers; ++j) root(i, j) *= std::sqrt(std::max(variances[j], 0.));
-  return root;
+  const Eigen::SelfAdjointEigenSolver<LensMatrix> solver(matrix);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 /// By how much the lenses may be off; the pose of the second camera has 0.
-SharedVector lens_errors(const std::array<LensRoot, 2>& roots, std::mt19937& random) {
+Eigen::VectorXd lens_errors(const std::array<LensMatrix, 2>& roots, std::mt19937& random) {
   std::normal_distribution<double> normal(0, 1);
-  SharedVector errors;
-  int at = kPairPose;
+  Eigen::VectorXd errors = Eigen::VectorXd::Zero(kShared);
+  int at = kPoseNumbers;
   for (const auto& root : roots) {
-    cv::Vec<double, kLensNumbers> drawn;
-    for (int i = 0; i < kLensNumbers; ++i) drawn[i] = normal(random);
-    const cv::Vec<double, kLensNumbers> error(root * drawn);
-    for (int i = 0; i < kLensNumbers; ++i) errors[at++] = error[i];
+    const Eigen::Matrix<double, kLensNumbers, 1> drawn =
+        Eigen::Matrix<double, kLensNumbers, 1>::NullaryExpr([&] { return normal(random); });
+    errors.segment<kLensNumbers>(at) = root * drawn;
+    at += kLensNumbers;
   }
   return errors;
 }
@@ -60,38 +57,25 @@ double mean_square(const std::vector<Pose>& poses, const Function& function) {
 /// In the axes of the first camera.
 glm::dvec3 place_of_m(const Pose& pair) { return glm::dvec3(glm::inverse(matrix_of(pair))[3]); }
 
-/// Poses of the second camera as other views and other lenses would have given them: a bootstrap of
-/// kResamples (lens/spread.hpp). Each draws as many views as there are, with repetition, draws the
-/// error of each lens by its covariance, and takes one Gauss-Newton step from the solution. A fit
-/// with measured lenses is off by their errors, too, which are the same in all views: the views
-/// alone do not show them.
+/// Poses of the second camera as other views and other lenses would have given them: the bootstrap
+/// of lens/spread.hpp, which also draws the error of each lens by its covariance. A fit with
+/// measured lenses is off by their errors, too, which are the same in all views: the views alone do
+/// not show them.
 std::vector<Pose> resample(std::span<const PairPoints> views, const KnownLenses& lenses,
                            const PairSolution& solution) {
   const Cameras cameras{lenses[0].camera, lenses[1].camera};
-  std::vector<PairStatement> statements;
+  std::vector<NormalEquations> of_cameras;
   for (std::size_t i = 0; i < views.size(); ++i)
-    statements.push_back(
-        statement_of(normal_of(views[i], solution.boards[i], solution.pair, cameras)));
+    of_cameras.push_back(normal_of(views[i], solution.boards[i], solution.pair, cameras, kShared)
+                             .without_first(kPoseNumbers));
   const std::array roots{root_of(lenses[0].covariance), root_of(lenses[1].covariance)};
-  std::mt19937 random(1);
   std::vector<Pose> poses;
-  for (int i = 0; i < kResamples; ++i) {
-    PairStatement sum{};
-    for (std::size_t draw = 0; draw < statements.size(); ++draw) {
-      const auto& drawn = statements[random() % statements.size()];
-      sum.matrix += drawn.matrix;
-      sum.slope += drawn.slope;
-    }
-    const SharedVector slope = sum.slope - SharedVector(sum.matrix * lens_errors(roots, random));
-    bool determined = false;
-    const cv::Matx66d inverse =
-        sum.matrix.get_minor<kPairPose, kPairPose>(0, 0).inv(cv::DECOMP_CHOLESKY, &determined);
-    if (!determined) continue;
-    const cv::Vec6d step = inverse * pair_part(slope);
-    auto pose = solution.pair;
-    pose.turn += cv::Vec3d(step[0], step[1], step[2]);
-    pose.move += cv::Vec3d(step[3], step[4], step[5]);
-    poses.push_back(pose);
+  for (const auto& step : bootstrap(of_cameras, [&](NormalEquations&sum, std::mt19937&random) {
+         sum.slope -= sum.matrix.selfadjointView<Eigen::Lower>() * lens_errors(roots, random);
+         sum = sum.of_first(kPoseNumbers);
+       })) {
+    poses.push_back(solution.pair);
+    move(poses.back(), step);
   }
   return poses;
 }
@@ -124,11 +108,8 @@ void describe_spread(const std::vector<Pose>& poses, std::size_t views, PairFit&
   std::vector<double> off_mm;
   for (const auto& pose : poses)
     off_mm.push_back(kM_to_mm * glm::distance(matrix_of(pose) * middle, there));
-  std::ranges::sort(off_mm);
   constexpr double kShare = 0.95, kNormal = 1.96;
-  fit.middle_mm =
-      off_mm[static_cast<std::size_t>(kShare * static_cast<double>(off_mm.size() - 1))] * t /
-      kNormal;
+  fit.middle_mm = quantile(std::move(off_mm), kShare) * t / kNormal;
 }
 
 constexpr double kMostRejected = 0.3;  ///< the share of the views that may contradict the others

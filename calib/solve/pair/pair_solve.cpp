@@ -1,50 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/solve/pair/pair_solve.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
-#include "calib/solve/lens/levenberg_marquardt.hpp"
+#include "calib/least_squares/levenberg_marquardt.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
 
-std::vector<PairNormal> normals_of(std::span<const PairPoints> views, const Cameras& cameras,
-                                   const PairSolution& at) {
-  std::vector<PairNormal> normals;
+PartEquations equations_at(std::span<const PairPoints> views, const Cameras& cameras,
+                           const PairSolution& at) {
+  PartEquations equations{.own = kPoseNumbers};
   for (std::size_t i = 0; i < views.size(); ++i)
-    normals.push_back(normal_of(views[i], at.boards[i], at.pair, cameras));
-  return normals;
+    equations.add(normal_of(views[i], at.boards[i], at.pair, cameras, kPoseNumbers));
+  return equations;
+}
+
+PairSolution moved(PairSolution solution, const PartEquations::Step& step) {
+  move(solution.pair, step.shared);
+  for (std::size_t i = 0; i < solution.boards.size(); ++i) move(solution.boards[i], step.own[i]);
+  return solution;
 }
 
 double points_in(const PairPoints& view) {
   return static_cast<double>(view.first.image_px.size() + view.second.image_px.size());
-}
-
-void move(Pose& pose, const cv::Vec6d& by) {
-  pose.turn += cv::Vec3d(by[0], by[1], by[2]);
-  pose.move += cv::Vec3d(by[3], by[4], by[5]);
-}
-
-/// One step of Levenberg and Marquardt.
-PairSolution stepped(const PairSolution& from, std::vector<PairNormal> normals, double damping) {
-  cv::Matx66d matrix;
-  cv::Vec6d slope;
-  for (auto& normal : normals) {
-    damp(normal.board, damping);
-    damp(normal.shared, damping);
-    const auto statement = statement_of(normal);
-    matrix += statement.matrix.get_minor<kPairPose, kPairPose>(0, 0);
-    slope += pair_part(statement.slope);
-  }
-  const cv::Vec6d step = matrix.solve(slope, cv::DECOMP_CHOLESKY);
-  PairSolution to = from;
-  move(to.pair, step);
-  for (std::size_t i = 0; i < normals.size(); ++i) move(to.boards[i], board_step(normals[i], step));
-  return to;
 }
 
 double rms_in_second_px(const PairPoints& view, const Pose& board, const Pose& pair,
@@ -55,12 +38,6 @@ double rms_in_second_px(const PairPoints& view, const Pose& board, const Pose& p
                     expected_px);
   return cv::norm(expected_px, view.second.image_px) /
          std::sqrt(static_cast<double>(expected_px.size()));
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
@@ -90,7 +67,7 @@ std::optional<PairSolution> first_guess(std::span<const PairPoints> views, const
     std::vector<double> rms_px;
     for (std::size_t i = 0; i < views.size(); ++i)
       rms_px.push_back(rms_in_second_px(views[i], guess.boards[i], candidate, cameras[1]));
-    const double middle_px = median_of(rms_px);
+    const double middle_px = median(rms_px);
     if (!(middle_px < least_px)) continue;
     least_px = middle_px;
     guess.pair = candidate;
@@ -103,13 +80,13 @@ std::optional<PairSolution> solve(std::span<const PairPoints> views, const Camer
                                   const PairSolution& start) {
   constexpr Effort kEffort{60, 1e-9};
   PairSolution best = start;
-  const auto normals = minimise(
-      best, kEffort, [&](const PairSolution& at) { return normals_of(views, cameras, at); },
-      stepped);
-  if (!std::isfinite(squares_of(normals))) return {};
+  const auto equations = minimise(
+      best, kEffort, [&](const PairSolution& at) { return equations_at(views, cameras, at); },
+      moved);
+  if (!std::isfinite(equations.cost)) return {};
   best.rms_px.resize(views.size());
   for (std::size_t i = 0; i < views.size(); ++i)
-    best.rms_px[i] = std::sqrt(normals[i].squares / points_in(views[i]));
+    best.rms_px[i] = std::sqrt(equations.parts[i].cost / points_in(views[i]));
   return best;
 }
 

@@ -23,8 +23,8 @@ Pose pose_of(const glm::dmat4& matrix);
 std::optional<PairSolution> first_guess(std::span<const PairPoints> views, const Cameras& cameras);
 
 /// The poses that fit best, in the sense of least squares: the minimum that OpenCV's
-/// stereoCalibrate finds with fixed intrinsics. By Levenberg and Marquardt, with the boards
-/// eliminated. `start`: nearly right. Nothing if the views do not determine them.
+/// stereoCalibrate finds with fixed intrinsics. `start`: nearly right. Nothing if the views do not
+/// determine them.
 std::optional<PairSolution> solve(std::span<const PairPoints> views, const Cameras& cameras,
                                   const PairSolution& start);
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstdlib>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -63,10 +65,7 @@ double pattern_misfit(const GreyView& white, const GreyView& black, const GreyVi
   std::vector<double> misfits;
   for (auto pixel = half; pixel != lit.end(); ++pixel)
     misfits.push_back(pixel->off / static_cast<double>(pixel->contrast));
-  const auto at = misfits.begin() + static_cast<std::ptrdiff_t>(
-                                        kPercentile * static_cast<double>(misfits.size() - 1));
-  std::ranges::nth_element(misfits, at);
-  return *at;
+  return quantile(std::move(misfits), kPercentile);
 }
 
 }  // namespace handcast::calib

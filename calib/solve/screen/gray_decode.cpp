@@ -9,7 +9,7 @@
 
 #include "calib/solve/screen/gray_code.hpp"
 #include "calib/solve/screen/gray_patch.hpp"
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {

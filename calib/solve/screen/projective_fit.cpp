@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/solve/screen/projective_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
+
+#include "calib/least_squares/levenberg_marquardt.hpp"
 
 namespace handcast::calib {
 namespace {
 
-using Normal = Eigen::Matrix<double, 11, 11>;
 using Vector = Eigen::Matrix<double, 11, 1>;
 using Scaling = Replicas::Scaling;
-
-constexpr int kMostSteps = 30;
-constexpr double kDone = 1e-10;  ///< relative decrease of the sum of squares
-constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6;
-/// Of a diagonal element before and after elimination: below, the equations are singular.
-constexpr double kSingular = 1e-9;
 
 /// Maps the points to mean 0 and a mean distance of about 1.
 template <class Position>
@@ -63,7 +57,7 @@ ProjectorModel model_of(const Vector& unknowns, const Scaling& scaling, double p
   const glm::dvec3 parallax(unknowns[8], unknowns[9], unknowns[10]);
   const auto back = glm::inverse(scaling.projector);
   return ProjectorModel{back * homography * scaling.camera, back * parallax * scaling.inverse_depth,
-                        plane_m}
+                     plane_m}
       .normalised();
 }
 
@@ -97,37 +91,15 @@ Linearised linearised(const Vector& u, const Scaling& scaling, double plane_m,
   return out;
 }
 
-double cost_of(const Vector& unknowns, const Scaling& scaling, double plane_m,
-               std::span<const Observation> observations) {
-  double cost = 0;
-  for (const auto& observation : observations)
-    cost += linearised(unknowns, scaling, plane_m, observation).residual.squaredNorm();
-  return cost;
+void add(NormalEquations& equations, const Linearised& line) {
+  equations.matrix.noalias() += line.slope.transpose() * line.slope;
+  equations.slope.noalias() += line.slope.transpose() * line.residual;
+  equations.cost += line.residual.squaredNorm();
 }
 
-void add(Eigen::Ref<Normal> normal, Eigen::Ref<Vector> right, const Linearised& line) {
-  normal.noalias() += line.slope.transpose() * line.slope;
-  right.noalias() += line.slope.transpose() * line.residual;
-}
-
-/// The step that solves the equations of the first `count` unknowns; nothing if they are singular.
-std::optional<Vector> solved(const Normal& normal, const Vector& right, int count) {
-  const Eigen::MatrixXd part = normal.topLeftCorner(count, count);
-  // With a diagonal of 1, what remains of it in the elimination tells how far the equations are
-  // from singular.
-  const Eigen::VectorXd scale = part.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> factors(scale.asDiagonal() * part * scale.asDiagonal());
-  if (factors.info() != Eigen::Success) return {};
-  const Eigen::MatrixXd lower = factors.matrixL();
-  const double least = lower.diagonal().minCoeff();
-  if (!(least * least > kSingular)) return {};
-  Vector step = Vector::Zero();
-  step.head(count) = scale.asDiagonal() * factors.solve(scale.asDiagonal() * right.head(count));
-  return step;
-}
-
-ProjectorModel undetermined(double plane_m) {
-  return {glm::dmat3(std::nan("")), glm::dvec3(std::nan("")), plane_m};
+Vector moved(Vector unknowns, const Eigen::VectorXd& step) {
+  unknowns.head(step.size()) += step;
+  return unknowns;
 }
 
 }  // namespace
@@ -138,36 +110,19 @@ double residual_px(const ProjectorModel& model, const Observation& observation) 
 }
 
 ProjectorModel refined(const ProjectorModel& start, std::span<const Observation> observations,
-                       Unknowns unknowns) {
-  const int count = static_cast<int>(unknowns);
+                    Unknowns unknowns) {
+  constexpr Effort kEffort{.steps = 30, .done = 1e-10};
   const auto scaling = scaling_of(observations, start.plane_m);
   Vector best = unknowns_of(start, scaling);
   if (unknowns == Unknowns::homography) best.tail<3>().setZero();
-  double cost = cost_of(best, scaling, start.plane_m, observations);
-  double damping = kFirstDamping;
-  for (int step = 0; step < kMostSteps; ++step) {
-    Normal normal = Normal::Zero();
-    Vector right = Vector::Zero();
+  const auto equations_at = [&](const Vector& at) {
+    auto equations = NormalEquations::zero(best.size());
     for (const auto& observation : observations)
-      add(normal, right, linearised(best, scaling, start.plane_m, observation));
-    if (!solved(normal, right, count)) return undetermined(start.plane_m);
-    const double before = cost;
-    while (damping < kMostDamping) {
-      Normal damped = normal;
-      damped.diagonal() *= 1 + damping;
-      const auto move = solved(damped, right, count);
-      const Vector next = best + move.value_or(Vector::Zero());
-      const double next_cost = cost_of(next, scaling, start.plane_m, observations);
-      if (move && next_cost <= cost) {
-        best = next;
-        cost = next_cost;
-        damping = std::max(damping / 10, 1e-12);
-        break;
-      }
-      damping *= 10;
-    }
-    if (damping >= kMostDamping || before - cost <= kDone * before) break;
-  }
+      add(equations, linearised(at, scaling, start.plane_m, observation));
+    return equations.of_first(static_cast<int>(unknowns));
+  };
+  if (!minimise(best, kEffort, equations_at, moved).step())
+    return {glm::dmat3(std::nan("")), glm::dvec3(std::nan("")), start.plane_m};
   return model_of(best, scaling, start.plane_m);
 }
 
@@ -176,26 +131,20 @@ Replicas::Replicas(const ProjectorModel& best, std::span<const Observation> obse
     : best_(best),
       unknowns_(unknowns),
       scaling_(scaling_of(observations, best.plane_m)),
-      blocks_(static_cast<std::size_t>(blocks)) {
+      blocks_(static_cast<std::size_t>(blocks), NormalEquations::zero(Vector::RowsAtCompileTime)) {
   const Vector at = unknowns_of(best, scaling_);
-  for (const auto& observation : observations) {
-    auto& sums = blocks_[static_cast<std::size_t>(observation.block)];
-    add(Eigen::Map<Normal>(sums.normal.data()), Eigen::Map<Vector>(sums.right.data()),
+  for (const auto& observation : observations)
+    add(blocks_[static_cast<std::size_t>(observation.block)],
         linearised(at, scaling_, best.plane_m, observation));
-  }
 }
 
 std::optional<ProjectorModel> Replicas::with_weights(std::span<const double> weights) const {
-  Normal normal = Normal::Zero();
-  Vector right = Vector::Zero();
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (weights[i] == 0) continue;
-    normal += weights[i] * Eigen::Map<const Normal>(blocks_[i].normal.data());
-    right += weights[i] * Eigen::Map<const Vector>(blocks_[i].right.data());
-  }
-  const auto step = solved(normal, right, static_cast<int>(unknowns_));
+  auto sum = NormalEquations::zero(Vector::RowsAtCompileTime);
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    if (weights[i] > 0) sum.add(blocks_[i], weights[i]);
+  const auto step = sum.of_first(static_cast<int>(unknowns_)).step();
   if (!step) return {};
-  return model_of(unknowns_of(best_, scaling_) + *step, scaling_, best_.plane_m);
+  return model_of(moved(unknowns_of(best_, scaling_), *step), scaling_, best_.plane_m);
 }
 
 }  // namespace handcast::calib

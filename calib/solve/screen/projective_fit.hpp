@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "calib/calibration.hpp"
+#include "calib/least_squares/normal_equations.hpp"
 #include "calib/solve/screen/correspondence.hpp"
 
 /// Least squares for ProjectorModel, which the fits of this folder share.
@@ -33,7 +33,7 @@ double residual_px(const ProjectorModel& model, const Observation& observation);
 /// homography must be finite and of the right orientation. The result is not finite if the
 /// observations do not determine the unknowns.
 ProjectorModel refined(const ProjectorModel& start, std::span<const Observation> observations,
-                       Unknowns unknowns);
+                    Unknowns unknowns);
 
 /// The fits that other weights of the blocks would give: one Gauss-Newton step from the fit to all
 /// of them. A step is exact up to the curvature of the model, which is small next to the noise, and
@@ -46,11 +46,6 @@ class Replicas {
   /// Nothing if these blocks do not determine the model. `weights`: one for each block.
   std::optional<ProjectorModel> with_weights(std::span<const double> weights) const;
 
-  /// Normal equations of the observations of a block.
-  struct Sums {
-    std::array<double, 11 * 11> normal{};
-    std::array<double, 11> right{};
-  };
   /// The fit is computed with centred and scaled coordinates (Hartley 1997).
   struct Scaling {
     glm::dmat3 camera{1}, projector{1};
@@ -61,7 +56,7 @@ class Replicas {
   ProjectorModel best_;
   Unknowns unknowns_;
   Scaling scaling_;
-  std::vector<Sums> blocks_;
+  std::vector<NormalEquations> blocks_;
 };
 
 }  // namespace handcast::calib

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "calib/solve/screen/resampling.hpp"
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {

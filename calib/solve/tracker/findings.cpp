@@ -9,6 +9,7 @@
 #include <set>
 
 #include "calib/solve/tracker/first_pose.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 
@@ -28,7 +29,7 @@ Cover cover_of(const Observations& o, const TrackerPose& pose, const std::vector
       std::ranges::count_if(squares, [](const auto& s) { return s.second >= kLeast; });
   const double area_px2 = static_cast<double>(o.camera.width_px) * o.camera.height_px;
   return {static_cast<double>(full) * kSquare_px * kSquare_px / area_px2,
-          percentile_of(depths_m, 0.98) - percentile_of(depths_m, 0.02)};
+          quantile(depths_m, 0.98) - quantile(depths_m, 0.02)};
 }
 
 std::optional<MisfitRun> misfit_run(const Observations& o, const std::vector<bool>& inliers) {
@@ -47,7 +48,7 @@ std::optional<MisfitRun> misfit_run(const Observations& o, const std::vector<boo
   std::vector<double> shares;
   for (const auto& bin : bins)
     if (bin.seen > 0) shares.push_back(bin.fit / bin.seen);
-  const double usual = percentile_of(shares, 0.5);
+  const double usual = median(shares);
 
   // The run with the largest sum of what is missing to half of the usual share (Kadane).
   double sum = 0, best = 0;
@@ -93,7 +94,7 @@ std::optional<std::string> other_finger(const Observations& o, const Refined& re
   if (times_s.size() < kLeastImages) return std::nullopt;
   const std::vector<double> sorted(times_s.begin(), times_s.end());
   const double begin_s = o.sightings.front().time_s;
-  const double from_s = percentile_of(sorted, 0.02), to_s = percentile_of(sorted, 0.98);
+  const double from_s = quantile(sorted, 0.02), to_s = quantile(sorted, 0.98);
   std::size_t outliers = 0;
   for (std::size_t i = 0; i < distances.size(); ++i) {
     const auto& s = o.sightings[i];

@@ -10,6 +10,7 @@
 #include "calib/solve/tracker/first_pose.hpp"
 #include "calib/solve/tracker/uncertainty.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -114,7 +115,7 @@ Residuals residuals_of(const Observations& o, const TrackerPose& pose,
   std::vector<double> fitting_px;
   for (std::size_t i = 0; i < distances.size(); ++i)
     if (inliers[i]) fitting_px.push_back(distances[i]);
-  return {percentile_of(fitting_px, 0.5), percentile_of(fitting_px, 0.95)};
+  return {median(fitting_px), quantile(fitting_px, 0.95)};
 }
 
 /// The middle and the corners of the box between the 2nd and the 98th percentiles of the points.
@@ -130,8 +131,8 @@ std::array<glm::dvec3, 9> places_of(const Observations& o, const TrackerPose& po
   }
   glm::dvec3 low, high;
   for (int a = 0; a < 3; ++a) {
-    low[a] = percentile_of(axes[static_cast<std::size_t>(a)], 0.02);
-    high[a] = percentile_of(axes[static_cast<std::size_t>(a)], 0.98);
+    low[a] = quantile(axes[static_cast<std::size_t>(a)], 0.02);
+    high[a] = quantile(axes[static_cast<std::size_t>(a)], 0.98);
   }
   std::array<glm::dvec3, 9> places{(low + high) / 2.};
   for (std::size_t corner = 0; corner < 8; ++corner)

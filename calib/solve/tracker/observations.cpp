@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -63,7 +65,7 @@ Result<std::vector<TimedSighting>> usable_sightings(std::span<const Sighting> si
   std::ranges::stable_sort(usable, {}, &TimedSighting::time_s);
   std::vector<double> sigmas(usable.size());
   std::ranges::transform(usable, sigmas.begin(), &TimedSighting::sigma);
-  const double usual_px = percentile_of(std::move(sigmas), 0.5);
+  const double usual_px = median(std::move(sigmas));
   for (auto& s : usable) s.sigma /= usual_px;
   return usable;
 }
@@ -202,13 +204,6 @@ Extent extent_of(const Observations& o) {
     if (o.track.at(0, image_s)) middles.add(middle);
   }
   return {points.deviations(), glm::length(middles.deviations())};
-}
-
-double percentile_of(std::vector<double> values, double p) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + std::lround(p * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 }  // namespace handcast::calib

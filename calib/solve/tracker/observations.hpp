@@ -62,7 +62,4 @@ struct Extent {
 };
 Extent extent_of(const Observations& observations);
 
-/// The p-th of values, 0 <= p <= 1; 0 if there are none.
-double percentile_of(std::vector<double> values, double p);
-
 }  // namespace handcast::calib

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "calib/solve/tracker/first_pose.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -47,21 +48,21 @@ double scale_of(const std::vector<Residual>& residuals, double limit) {
   std::vector<double> lengths;
   for (const auto& r : residuals)
     if (const double length = r.off.norm(); length < limit) lengths.push_back(length);
-  return std::max(percentile_of(std::move(lengths), 0.5) / 1.1774, 1e-3);
+  return std::max(median(std::move(lengths)) / 1.1774, 1e-3);
 }
 
 /// A part of the normal equations, in standard deviations, at which the tracker's error is the
 /// same.
 struct Moment {
-  NormalEquations normal;                ///< as if there was no such error
+  NormalEquations normal = NormalEquations::zero(7);  ///< as if there was no such error
   Curvature second = Curvature::Zero();  ///< what the curvature of the robust cost is less
 
   void add(const Residual& r, double limit, double unit) {
     const double share = 1 - r.off.squaredNorm() / (limit * limit);
     if (share <= 0) return;
     const Change slope = r.slope.transpose() * r.off;
-    normal.curvature.noalias() += unit * share * share * r.slope.transpose() * r.slope;
-    normal.gradient.noalias() += unit * share * share * slope;
+    normal.matrix.noalias() += unit * share * share * r.slope.transpose() * r.slope;
+    normal.slope.noalias() += unit * share * share * slope;
     second.noalias() += 4 * unit * share / (limit * limit) * slope * slope.transpose();
   }
 };
@@ -74,9 +75,9 @@ struct SharedError {
 SharedError shared_error(const NormalEquations& n, double wander_m) {
   if (wander_m == 0) return {Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero()};
   const Eigen::Matrix3d information =
-      n.curvature.block<3, 3>(3, 3) + Eigen::Matrix3d::Identity() / (wander_m * wander_m);
+      n.matrix.block<3, 3>(3, 3) + Eigen::Matrix3d::Identity() / (wander_m * wander_m);
   const Eigen::Matrix3d covariance = information.inverse();
-  return {covariance * n.gradient.segment<3>(3), covariance};
+  return {covariance * n.slope.segment<3>(3), covariance};
 }
 
 /// Whether the points of a time can tell the shared error from their own.
@@ -90,22 +91,21 @@ bool has_shared_error(const Observations& o) {
 /// What a moment says about the pose, whatever its shared error is. A shift by that error and one
 /// of the pose have the same slopes.
 NormalEquations without_shared_error(const NormalEquations& n, const SharedError& error) {
-  const Eigen::Matrix<double, 7, 3> across = n.curvature.middleCols<3>(3);
-  return {n.curvature - across * error.covariance * across.transpose(),
-          n.gradient - across * error.mean};
+  const Eigen::Matrix<double, 7, 3> across = n.matrix.middleCols<3>(3);
+  return {n.matrix - across * error.covariance * across.transpose(), n.slope - across * error.mean};
 }
 
 /// The same with the curvature of the robust cost; without its second part if outliers prevail.
 /// The gradient is that of step(), so that the sum over all moments is 0 at the solution.
 NormalEquations of_robust_cost(const Moment& moment, double wander_m) {
   auto robust = moment.normal;
-  robust.curvature -= moment.second;
+  robust.matrix -= moment.second;
   if (wander_m == 0) return robust;
   auto plain = without_shared_error(moment.normal, shared_error(moment.normal, wander_m));
-  const Eigen::LDLT<Eigen::Matrix3d> solver(robust.curvature.block<3, 3>(3, 3));
+  const Eigen::LDLT<Eigen::Matrix3d> solver(robust.matrix.block<3, 3>(3, 3));
   if (!solver.isPositive()) return plain;
   robust = without_shared_error(robust, shared_error(robust, wander_m));
-  return {robust.curvature, plain.gradient};
+  return {robust.matrix, plain.slope};
 }
 
 /// `limit`: sightings that are farther off, in standard deviations of the median one times px,
@@ -156,21 +156,19 @@ namespace {
 /// One Gauss-Newton step; nothing if the equations are singular. Estimates the shared error anew.
 std::optional<Change> step(const Observations& o, Refined& refined, double limit) {
   constexpr double kLeastWander_m = 1e-5, kMostWander_m = 0.005;
-  NormalEquations sum;
+  auto sum = NormalEquations::zero(7);
   double squares_m2 = 0, count = 0;
   for (const auto& moment : moments_of(o, refined, limit)) {
     const auto error = shared_error(moment.normal, refined.wander_m);
-    const auto normal = without_shared_error(moment.normal, error);
-    sum.curvature += normal.curvature;
-    sum.gradient += normal.gradient;
+    sum.add(without_shared_error(moment.normal, error));
     squares_m2 += error.mean.squaredNorm() + error.covariance.trace();
     count += 3;
   }
   if (refined.wander_m > 0)
     refined.wander_m = std::clamp(std::sqrt(squares_m2 / count), kLeastWander_m, kMostWander_m);
-  const Eigen::LDLT<Curvature> solver(sum.curvature);
-  if (solver.info() != Eigen::Success || !(solver.vectorD().minCoeff() > 0)) return std::nullopt;
-  Change change = solver.solve(sum.gradient);
+  const auto solution = sum.step();
+  if (!solution) return std::nullopt;
+  Change change = *solution;
   change[6] =
       std::clamp(refined.pose.offset_s + change[6], -kSearch_s, kSearch_s) - refined.pose.offset_s;
   return change.allFinite() ? std::optional(change) : std::nullopt;
@@ -221,10 +219,8 @@ std::vector<NormalEquations> normals_by_time(const Observations& o, const Refine
   for (const auto& moment : moments_of(o, refined, kTukey * refined.scale)) {
     const auto bin = static_cast<std::size_t>(begin_s / bin_s);
     begin_s += kWander_s;
-    if (normals.size() <= bin) normals.resize(bin + 1);
-    const auto normal = of_robust_cost(moment, refined.wander_m);
-    normals[bin].curvature += normal.curvature;
-    normals[bin].gradient += normal.gradient;
+    if (normals.size() <= bin) normals.resize(bin + 1, NormalEquations::zero(7));
+    normals[bin].add(of_robust_cost(moment, refined.wander_m));
   }
   return normals;
 }
@@ -233,14 +229,14 @@ std::array<std::vector<Measured>, 3> common_errors(const Observations& o, const 
   std::array<std::vector<Measured>, 3> errors;
   if (refined.wander_m == 0) return errors;
   for (const auto& moment : moments_of(o, refined, kTukey * refined.scale)) {
-    const Eigen::LDLT<Eigen::Matrix3d> solver(moment.normal.curvature.block<3, 3>(3, 3));
+    const Eigen::LDLT<Eigen::Matrix3d> solver(moment.normal.matrix.block<3, 3>(3, 3));
     const bool is_known = solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 0;
     const Eigen::Matrix3d covariance =
         is_known
             ? Eigen::Matrix3d(solver.solve(Eigen::Matrix3d::Identity()))
             : Eigen::Matrix3d(Eigen::Matrix3d::Constant(std::numeric_limits<double>::infinity()));
     const Eigen::Vector3d shift =
-        is_known ? Eigen::Vector3d(covariance * moment.normal.gradient.segment<3>(3))
+        is_known ? Eigen::Vector3d(covariance * moment.normal.slope.segment<3>(3))
                  : Eigen::Vector3d(Eigen::Vector3d::Zero());
     for (int axis = 0; axis < 3; ++axis)
       errors[static_cast<std::size_t>(axis)].push_back({shift[axis], covariance(axis, axis)});

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib/least_squares/normal_equations.hpp"
 #include "calib/solve/tracker/lasting.hpp"
 #include "calib/solve/tracker/observations.hpp"
 
@@ -51,12 +52,8 @@ std::optional<Refined> refine(const Observations& observations, const TrackerPos
 std::optional<TrackerPose> with_limit(const Observations& observations, const Refined& refined,
                                       double factor);
 
-/// The second derivative of the robust cost and minus its gradient, over a part of the sightings.
-struct NormalEquations {
-  Curvature curvature = Curvature::Zero();
-  Change gradient = Change::Zero();
-};
-/// Of each `bin_s` of time. Their sum has no gradient at the solution.
+/// The second derivative of the robust cost and minus its gradient, of each `bin_s` of time. Their
+/// sum has no gradient at the solution.
 std::vector<NormalEquations> normals_by_time(const Observations& observations,
                                              const Refined& refined, double bin_s);
 

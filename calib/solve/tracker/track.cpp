@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calib {
 namespace {
 
@@ -14,10 +16,7 @@ constexpr double kShortestGap_s = 0.060;
 double median_step(const std::vector<double>& times_s) {
   std::vector<double> steps_s;
   for (std::size_t i = 1; i < times_s.size(); ++i) steps_s.push_back(times_s[i] - times_s[i - 1]);
-  if (steps_s.empty()) return 0;
-  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
-  std::nth_element(steps_s.begin(), middle, steps_s.end());
-  return *middle;
+  return median(std::move(steps_s));
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calib/solve/tracker/uncertainty.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -17,28 +17,13 @@ constexpr double kBlock_s = 2.5;
 constexpr std::size_t kLeastBlocks = 8;
 constexpr int kResamples = 500;
 
-/// The 97.5 % quantile of Student's t (Cornish and Fisher's expansion; Abramowitz and Stegun
-/// 26.7.5). Off by less than 1 % from 4 degrees of freedom on.
-double students_t(double freedom) {
-  constexpr double z = 1.959964;
-  constexpr double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  return z + (z3 + z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * z) / (96 * freedom * freedom) +
-         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * freedom * freedom * freedom);
-}
-
 NormalEquations sum_of(const std::vector<NormalEquations>& normals) {
-  NormalEquations sum;
-  for (const auto& n : normals) {
-    sum.curvature += n.curvature;
-    sum.gradient += n.gradient;
-  }
+  auto sum = NormalEquations::zero(7);
+  for (const auto& n : normals) sum.add(n);
   return sum;
 }
 
-Change newton_step(const NormalEquations& normal) {
-  const Eigen::LDLT<Curvature> solver(normal.curvature);
-  return solver.isPositive() ? Change(solver.solve(normal.gradient)) : Change::Zero();
-}
+Change newton_step(const NormalEquations& normal) { return normal.step().value_or(Change::Zero()); }
 
 std::size_t block_length(std::size_t bins) {
   const auto longest = static_cast<std::size_t>(kBlock_s / kBin_s);
@@ -55,10 +40,10 @@ Curvature bootstrap(const std::vector<NormalEquations>& normals) {
   const auto all = sum_of(normals);
   Curvature covariance = Curvature::Zero();
   for (int i = 0; i < kResamples; ++i) {
-    NormalEquations sum{all.curvature, Change::Zero()};
+    NormalEquations sum{all.matrix, Change::Zero()};
     for (std::size_t b = 0; b < blocks; ++b) {
       const auto first = any(random);
-      for (std::size_t k = 0; k < length; ++k) sum.gradient += normals[(first + k) % bins].gradient;
+      for (std::size_t k = 0; k < length; ++k) sum.slope += normals[(first + k) % bins].slope;
     }
     const auto change = newton_step(sum);
     covariance += change * change.transpose() / kResamples;
@@ -116,8 +101,8 @@ Residuals held_out(const Observations& o, const Refined& refined) {
   const auto all = sum_of(normals);
   std::vector<double> held_px;
   for (std::size_t f = 0; f < normals.size(); ++f) {
-    const NormalEquations rest{all.curvature - normals[f].curvature,
-                               all.gradient - normals[f].gradient};
+    auto rest = all;
+    rest.add(normals[f], -1);
     const auto distances = o.distances_px(moved(refined.pose, newton_step(rest)));
     for (std::size_t i = 0; i < distances.size(); ++i) {
       const auto& s = o.sightings[i];
@@ -126,7 +111,7 @@ Residuals held_out(const Observations& o, const Refined& refined) {
         held_px.push_back(distances[i]);
     }
   }
-  return {percentile_of(held_px, 0.5), percentile_of(held_px, 0.95)};
+  return {median(held_px), quantile(held_px, 0.95)};
 }
 
 }  // namespace handcast::calib

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::calib {
 
 double depth_by_size_m(const CameraModel& camera, std::span<const SeenPoint> hand) {
@@ -22,10 +24,7 @@ double depth_by_size_m(const CameraModel& camera, std::span<const SeenPoint> han
         depths_m.push_back(camera.fx_px * apart_m / apart_px);
     }
   if (depths_m.size() < kFewest) return 0;
-  const auto at = depths_m.begin() +
-                  static_cast<std::ptrdiff_t>(kQuantile * static_cast<double>(depths_m.size()));
-  std::nth_element(depths_m.begin(), at, depths_m.end());
-  return *at;
+  return quantile(std::move(depths_m), kQuantile);
 }
 
 VolumeCoverage::VolumeCoverage(const CameraModel& camera, double near_m, double far_m)

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <vector>
 
+#include "calib/least_squares/levenberg_marquardt.hpp"
+#include "calib/least_squares/normal_equations.hpp"
+
 namespace handcast::camera::leap {
 namespace {
 
@@ -25,7 +28,6 @@ struct Sample {
 /// fx, fy, cx, cy, k1, k2, p1, p2, k3.
 constexpr std::size_t kParameters = 9;
 using Parameters = std::array<double, kParameters>;
-using Matrix = std::array<Parameters, kParameters>;
 
 calib::CameraModel camera_of(const Parameters& p, int width_px, int height_px) {
   return {width_px, height_px, p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8]};
@@ -69,69 +71,21 @@ Projected project(const Parameters& p, const glm::dvec2& ray) {
            focal * glm::dvec2(r2 + 2 * x * x, 2 * x * y), outward * r2 * r2 * r2}};
 }
 
-/// Sum of the squared distances.
-double cost_of(const Parameters& p, const std::vector<Sample>& samples) {
-  double sum = 0;
-  for (const auto& [slope, image_px] : samples) {
-    const auto off = project(p, slope).image_px - image_px;
-    sum += glm::dot(off, off);
-  }
-  return sum;
-}
-
-/// Solves m x = b by Gauss's elimination; m is symmetric and positive.
-Parameters solve(Matrix m, Parameters b) {
-  for (std::size_t i = 0; i < kParameters; ++i)
-    for (std::size_t row = i + 1; row < kParameters; ++row) {
-      const double factor = m[row][i] / m[i][i];
-      for (std::size_t column = i; column < kParameters; ++column)
-        m[row][column] -= factor * m[i][column];
-      b[row] -= factor * b[i];
-    }
-  for (std::size_t i = kParameters; i-- > 0;) {
-    for (std::size_t column = i + 1; column < kParameters; ++column)
-      b[i] -= m[i][column] * b[column];
-    b[i] /= m[i][i];
-  }
-  return b;
-}
-
-/// The step of Levenberg and Marquardt.
-Parameters step_of(const Parameters& p, const std::vector<Sample>& samples, double damping) {
-  Matrix square{};
-  Parameters right{};
+calib::NormalEquations equations_at(const Parameters& p, const std::vector<Sample>& samples) {
+  constexpr std::array kColumns{0, 1, 2, 3, 4, 5, 6, 7, 8};
+  auto equations = calib::NormalEquations::zero(kParameters);
   for (const auto& [slope, image_px] : samples) {
     const auto projected = project(p, slope);
     const auto off = image_px - projected.image_px;
-    for (std::size_t i = 0; i < kParameters; ++i) {
-      right[i] += glm::dot(projected.slope[i], off);
-      for (std::size_t j = 0; j < kParameters; ++j)
-        square[i][j] += glm::dot(projected.slope[i], projected.slope[j]);
+    equations.cost += glm::dot(off, off);
+    for (int axis = 0; axis < 2; ++axis) {
+      Parameters derivatives;
+      std::ranges::transform(projected.slope, derivatives.begin(),
+                             [axis](const glm::dvec2& by) { return by[axis]; });
+      equations.add(kColumns, derivatives, off[axis], 1);
     }
   }
-  for (std::size_t i = 0; i < kParameters; ++i) square[i][i] *= 1 + damping;
-  return solve(square, right);
-}
-
-Parameters fit(Parameters p, const std::vector<Sample>& samples) {
-  constexpr int kSteps = 100;
-  double damping = 1e-3, cost = cost_of(p, samples);
-  for (int i = 0; i < kSteps && damping < 1e9; ++i) {
-    const auto step = step_of(p, samples, damping);
-    auto next = p;
-    for (std::size_t k = 0; k < kParameters; ++k) next[k] += step[k];
-    const double next_cost = cost_of(next, samples);
-    if (!(next_cost < cost)) {
-      damping *= 10;
-      continue;
-    }
-    const bool is_done = cost - next_cost < 1e-9 * cost;
-    p = next;
-    cost = next_cost;
-    damping = std::max(damping / 10, 1e-12);
-    if (is_done) break;
-  }
-  return p;
+  return equations;
 }
 
 void judge(LensFit& fit, const std::vector<Sample>& samples, const Parameters& parameters) {
@@ -160,7 +114,14 @@ Result<LensFit> fit_lens(const EyeCalibration& eye, int width_px, int height_px)
   const auto samples = samples_of(eye, camera_of(start, width_px, height_px));
   if (samples.size() < kParameters * 10)
     return fail(Errc::bad_data, "the controller's lens sees almost nothing within 80 degrees");
-  const auto parameters = fit(start, samples);
+  auto parameters = start;
+  calib::minimise(
+      parameters, {.steps = 100, .done = 1e-9},
+      [&](const Parameters& at) { return equations_at(at, samples); },
+      [](Parameters p, const auto& step) {
+        for (std::size_t i = 0; i < kParameters; ++i) p[i] += step[static_cast<Eigen::Index>(i)];
+        return p;
+      });
   LensFit fitted{.camera = camera_of(parameters, width_px, height_px)};
   judge(fitted, samples, parameters);
   if (!std::isfinite(fitted.rms_px) || fitted.worst_px > width_px / 4. || fitted.camera.folds())

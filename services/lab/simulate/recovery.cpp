@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::simulate {
 namespace {
 
@@ -32,9 +34,7 @@ std::optional<double> usual_error_mm(std::span<const LightMoment> moments) {
   for (const auto& moment : moments)
     if (!moment.dark) errors.push_back(moment.error_mm);
   if (errors.empty()) return std::nullopt;
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::ranges::nth_element(errors, middle);
-  return *middle;
+  return median(std::move(errors));
 }
 
 bool is_good(const LightMoment& moment, const LightMoment& clean, double usual_mm) {

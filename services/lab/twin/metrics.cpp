@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::twin {
 namespace {
 
@@ -35,14 +37,7 @@ void Metrics::Samples::add(float value) {
   stride_ *= 2;
 }
 
-double Metrics::Samples::percentile(double share) const {
-  std::vector<float> values = kept_;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto at = values.begin() +
-                  static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(rank, 1, values.size()) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
+double Metrics::Samples::percentile(double share) const { return quantile(kept_, share); }
 
 void Metrics::Bin::add(const FrameScore::Hand& hand) {
   ++frames;

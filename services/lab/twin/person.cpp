@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "ipc/base/statistics.hpp"
 #include "services/lab/twin/random.hpp"
 
 namespace handcast::twin {
@@ -18,12 +19,6 @@ constexpr std::uint64_t kPalmDraw = 5, kWidthDraw = 6;
 float width_factor(const config::TwinShape& settings, int seed) {
   return static_cast<float>(1 + settings.width_spread *
                                     Random(seed, Stream::person).spread(kWidthDraw));
-}
-
-float median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 glm::vec3 place_m(const msg::HandPose& pose, int joint) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::landmarks {
 namespace {
 
@@ -15,12 +17,6 @@ constexpr float kDiffers = 0.2f;     ///< from the tip of one finger to that of 
 constexpr float kMostShift = 0.16f;  ///< the largest error of a tracker in a hand's position
 
 constexpr float kLeastTrust = 0.3f;  ///< factor of a landmark that contradicts the tracker
-
-float median(Confidences values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The shift from the tracker's hand to the estimated one, at most `most_px` long.
 glm::vec2 shift_px(const Points& estimated_px, const Points& tracker_px, float most_px) {

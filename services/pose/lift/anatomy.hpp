@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "calib/least_squares/normal_equations.hpp"
 #include "services/pose/lift/skeleton.hpp"
 
 namespace handcast::pose {
@@ -24,38 +25,34 @@ inline constexpr double kLimitSd = 0.05;  ///< how hard the limits are, rad
 inline constexpr double kFollows = 0.6, kFollowsSd = 0.25;
 /// @}
 
-/// Half the square of the residual `r` of the unknown `column`; adds it to `equations` (null: not).
-template <class Equations>
-double square(int column, double r, double sd, Equations* equations) {
+/// Adds that the unknown `column` should be less by `off`, with a standard deviation.
+inline void expect(int column, double off, double sd, calib::NormalEquations& equations) {
   const double weight = 1 / (sd * sd);
-  if (equations) equations->add(column, r, weight);
-  return 0.5 * weight * r * r;
+  equations.matrix(column, column) += weight;
+  equations.slope[column] -= weight * off;
+  equations.cost += 0.5 * weight * off * off;
 }
 
-/// The cost of the angles of a hand: usual angles, limits, and last joints that follow. The angles
-/// are the unknowns from `first` on, finger by finger.
-template <class Equations>
-double anatomy(const std::array<std::array<double, kAngles>, kFingers>& angles, int first,
-               Equations* equations) {
-  constexpr std::array<double, 2> kDerivative{-kFollows, 1};
+/// Adds what is known of the angles of a hand: usual angles, limits, and last joints that follow.
+/// The angles are the unknowns from `first` on, finger by finger.
+inline void add_anatomy(const std::array<std::array<double, kAngles>, kFingers>& angles, int first,
+                        calib::NormalEquations& equations) {
+  constexpr std::array kDerivative{-kFollows, 1.0};
   constexpr double kFollowsWeight = 1 / (kFollowsSd * kFollowsSd);
-  double cost = 0;
   for (int f = 0; f < kFingers; ++f) {
     const int column = first + f * kAngles;
     for (int a = 0; a < kAngles; ++a) {
       const AngleRange& range = f == 0 ? kThumbAngles[a] : kFingerAngles[a];
       const double angle = angles[f][a];
-      cost += square(column + a, angle - range.usual, range.sd, equations);
+      expect(column + a, angle - range.usual, range.sd, equations);
       const double beyond = angle - std::clamp(angle, range.low, range.high);
-      if (beyond != 0) cost += square(column + a, beyond, kLimitSd, equations);
+      if (beyond != 0) expect(column + a, beyond, kLimitSd, equations);
     }
     if (f == 0) continue;
-    const std::array<int, 2> columns{column + 2, column + 3};
-    const double r = angles[f][3] - kFollows * angles[f][2];
-    if (equations) equations->add(columns.data(), kDerivative.data(), 2, r, kFollowsWeight);
-    cost += 0.5 * kFollowsWeight * r * r;
+    const double off = angles[f][3] - kFollows * angles[f][2];
+    equations.add(std::array{column + 2, column + 3}, kDerivative, -off, kFollowsWeight);
+    equations.cost += 0.5 * kFollowsWeight * off * off;
   }
-  return cost;
 }
 
 }  // namespace handcast::pose

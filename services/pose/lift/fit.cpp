@@ -6,12 +6,12 @@
 #include <limits>
 
 #include "services/pose/lift/anatomy.hpp"
-#include "services/pose/lift/levenberg_marquardt.hpp"
+#include "services/pose/lift/hand_steps.hpp"
 
 namespace handcast::pose {
 namespace {
 
-using Equations = NormalEquations<kUnknowns>;
+using calib::NormalEquations;
 
 constexpr double kHuber = 3;  ///< beyond so many standard deviations, residuals count linearly
 constexpr double kUsualSizeSd = 0.25;
@@ -25,7 +25,7 @@ glm::dvec3 in_front(glm::dvec3 at_m) {
 
 constexpr int column_of(int finger, int angle) { return kFirstAngle + finger * kAngles + angle; }
 
-/// One evaluation of the problem at a posture.
+/// What is seen and known of a hand.
 struct Problem {
   const Skeleton& skeleton;
   const calib::CameraModel& camera;
@@ -33,62 +33,44 @@ struct Problem {
   const SeenHand& seen;
   const Prior& prior;
 
-  /// The cost of a posture; adds to `equations` if it is given.
-  double at(const Posture& posture, Equations* equations) const {
+  NormalEquations equations_at(const Posture& posture) const {
     const PosedHand hand = skeleton.posed(posture, distance_m);
-    double cost = 0;
+    auto equations = NormalEquations::zero(kUnknowns);
     for (int i = 0; i < msg::kLandmarks; ++i)
-      if (seen.sigma_px[i] > 0) cost += landmark(hand, i, equations);
-    return cost + known(posture, equations) + anatomy(posture.angle, kFirstAngle, equations);
+      if (seen.sigma_px[i] > 0) add_landmark(hand, i, equations);
+    expect(kSizeUnknown, posture.log_size - prior.usual_log_size, kUsualSizeSd, equations);
+    const Unknowns off = difference(prior.mean, posture);
+    for (int i = 0; i < kUnknowns; ++i)
+      if (prior.variance[i] > 0) expect(i, off[i], std::sqrt(prior.variance[i]), equations);
+    add_anatomy(posture.angle, kFirstAngle, equations);
+    return equations;
   }
 
  private:
-  double landmark(const PosedHand& hand, int i, Equations* equations) const {
-    const glm::dvec2 miss_px =
-        camera.project(in_front(hand.place_m[msg::kJointOfLandmark[i]])) - seen.px[i];
+  void add_landmark(const PosedHand& hand, int i, NormalEquations& equations) const {
+    const glm::dvec3 at_m = hand.place_m[msg::kJointOfLandmark[i]];
+    const glm::dvec2 miss_px = seen.px[i] - camera.project(in_front(at_m));
     const double sigmas = glm::length(miss_px) / seen.sigma_px[i];
+    equations.cost += sigmas < kHuber ? 0.5 * sigmas * sigmas : kHuber * (sigmas - 0.5 * kHuber);
     const double trust = std::min(1.0, kHuber / std::max(sigmas, 1e-9));
-    if (equations)
-      derive(hand, i, miss_px, trust / (seen.sigma_px[i] * seen.sigma_px[i]), *equations);
-    return sigmas < kHuber ? 0.5 * sigmas * sigmas : kHuber * (sigmas - 0.5 * kHuber);
-  }
-
-  void derive(const PosedHand& hand, int i, glm::dvec2 miss_px, double weight,
-              Equations& equations) const {
-    const int joint = msg::kJointOfLandmark[i];
-    const glm::dvec3 at_m = hand.place_m[joint], arm_m = at_m - hand.place_m[kPalm];
-    std::array<glm::dvec3, kFirstAngle + kAngles> moves{glm::dvec3(0, -arm_m.z, arm_m.y),
-                                                        glm::dvec3(arm_m.z, 0, -arm_m.x),
-                                                        glm::dvec3(-arm_m.y, arm_m.x, 0),
-                                                        glm::dvec3(1, 0, 0),
-                                                        glm::dvec3(0, 1, 0),
-                                                        arm_m};
-    std::array<int, kFirstAngle + kAngles> columns{0, 1, 2, 3, 4, 5};
-    int count = kFirstAngle;
-    const int finger = (i - 1) / 4, along = i == 0 ? 0 : (i - 1) % 4;
-    for (int a = 0; a < kAngles && std::max(0, a - 1) < along; ++a) {
-      const glm::dvec3 pivot_m = hand.place_m[kFirstJoint[finger] + std::max(0, a - 1)];
-      columns[count] = column_of(finger, a);
-      moves[count++] = glm::cross(hand.hinge[finger][a], at_m - pivot_m);
-    }
+    const double weight = trust / (seen.sigma_px[i] * seen.sigma_px[i]);
+    const glm::dvec3 arm_m = at_m - hand.place_m[kPalm];
+    Moves moves;
+    moves.add_turn(arm_m);
+    moves.add(kPlaceUnknown, {1, 0, 0});
+    moves.add(kPlaceUnknown + 1, {0, 1, 0});
+    moves.add(kSizeUnknown, arm_m);
+    moves.add_angles(hand, i, column_of((i - 1) / 4, 0));
     const glm::dmat3x2 jacobian_px_per_m = camera.jacobian_px_per_m(in_front(at_m));
-    std::array<double, kFirstAngle + kAngles> across, down;
-    for (int c = 0; c < count; ++c) {
-      const glm::dvec2 way_px = jacobian_px_per_m * moves[c];
+    std::array<double, Moves::kMost> across, down;
+    for (int c = 0; c < moves.count; ++c) {
+      const glm::dvec2 way_px = jacobian_px_per_m * moves.by[c];
       across[c] = way_px.x;
       down[c] = way_px.y;
     }
-    equations.add(columns.data(), across.data(), count, miss_px.x, weight);
-    equations.add(columns.data(), down.data(), count, miss_px.y, weight);
-  }
-
-  double known(const Posture& posture, Equations* equations) const {
-    double cost =
-        square(kSizeUnknown, posture.log_size - prior.usual_log_size, kUsualSizeSd, equations);
-    const Unknowns off = difference(prior.mean, posture);
-    for (int i = 0; i < kUnknowns; ++i)
-      if (prior.variance[i] > 0) cost += square(i, off[i], std::sqrt(prior.variance[i]), equations);
-    return cost;
+    const auto columns = std::span(moves.columns).first(moves.count);
+    equations.add(columns, across, miss_px.x, weight);
+    equations.add(columns, down, miss_px.y, weight);
   }
 };
 
@@ -102,10 +84,7 @@ double most_step(int unknown) {
 }  // namespace
 
 Posture moved(Posture posture, const Unknowns& step) {
-  const glm::dvec3 by(step[0], step[1], step[2]);
-  const double angle = glm::length(by);
-  if (angle > 1e-12)
-    posture.turn = glm::normalize(glm::angleAxis(angle, by / angle) * posture.turn);
+  posture.turn = turned_by(posture.turn, {step[0], step[1], step[2]});
   posture.palm_m += glm::dvec2(step[kPlaceUnknown], step[kPlaceUnknown + 1]);
   posture.log_size += step[kSizeUnknown];
   for (int f = 0; f < kFingers; ++f)
@@ -114,11 +93,7 @@ Posture moved(Posture posture, const Unknowns& step) {
 }
 
 Unknowns difference(const Posture& from, const Posture& to) {
-  glm::dquat turned = to.turn * glm::conjugate(from.turn);
-  if (turned.w < 0) turned = -turned;
-  const glm::dvec3 axis(turned.x, turned.y, turned.z);
-  const double sine = glm::length(axis);
-  const glm::dvec3 by = sine > 1e-12 ? axis * (2 * std::atan2(sine, turned.w) / sine) : axis;
+  const glm::dvec3 by = turn_between(from.turn, to.turn);
   const glm::dvec2 way_m = to.palm_m - from.palm_m;
   Unknowns step{by.x, by.y, by.z, way_m.x, way_m.y, to.log_size - from.log_size};
   for (int f = 0; f < kFingers; ++f)
@@ -129,8 +104,12 @@ Unknowns difference(const Posture& from, const Posture& to) {
 Fit fit_posture(const Skeleton& skeleton, const calib::CameraModel& camera, double distance_m,
                 const SeenHand& seen, const Prior& prior, const Posture& start, int steps) {
   const Problem problem{skeleton, camera, distance_m, seen, prior};
-  const auto best = minimise<kUnknowns>(problem, start, steps, most_step);
-  return {best.state, best.cost, best.variance};
+  Fit fit{.posture = start};
+  const auto equations_at = [&](const Posture& posture) { return problem.equations_at(posture); };
+  const auto equations = fit_hand<Unknowns>(fit.posture, steps, equations_at, most_step);
+  fit.cost = equations.cost;
+  fit.variance = variances_of<Unknowns>(equations);
+  return fit;
 }
 
 namespace {

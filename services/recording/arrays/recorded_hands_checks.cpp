@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/statistics.hpp"
 #include "services/joints/leap_hand.hpp"
 
 namespace handcast::recording {
@@ -19,13 +20,6 @@ using joints::kWrist;
 
 constexpr double kMostStamp_us = 4e15;  ///< differences in ns fit in 64 bits
 constexpr double kShortestStep_us = 100, kLongestStep_us = 1.05e6;
-
-/// `values` must not be empty.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 bool is_step_of_a_sensor(double step_us) {
   return step_us >= kShortestStep_us && step_us <= kLongestStep_us;

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 #include "renderer/base/srgb.hpp"
 #include "renderer/output/light.hpp"
 
@@ -60,15 +60,14 @@ std::pair<double, double> interval_of(std::span<const GreyStep> steps, double br
     for (auto& step : sample) step = steps[any(random)];
     gammas.push_back(best_gamma(sample, brightest));
   }
-  std::ranges::sort(gammas);
-  return {gammas[kResamples / 40], gammas[kResamples - 1 - kResamples / 40]};
+  return {quantile(gammas, 0.025), quantile(gammas, 0.975)};
 }
 
 /// The misfit of a light that is the same at all levels.
 double misfit_of_constant(std::span<const GreyStep> steps) {
   std::vector<double> shares;
   for (const auto& step : steps) shares.push_back(step.share);
-  const double middle = calib::median(std::move(shares));
+  const double middle = median(std::move(shares));
   return misfit_of(steps, [&](double) { return middle; });
 }
 
@@ -77,7 +76,7 @@ double noise_of(std::span<const GreyStep> steps, double brightest, double gamma_
   std::vector<double> differences;
   for (const auto& step : steps)
     differences.push_back(std::abs(step.share - share_of(step.level, brightest, gamma_setting)));
-  return calib::median(std::move(differences));
+  return median(std::move(differences));
 }
 
 constexpr int kRounds = 3;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -169,7 +169,7 @@ double HandLight::flicker() const {
     if (means_[i].lighting == means_[i - 1].lighting && means_[i].grey > 0)
       changes.push_back(std::abs(means_[i].grey - means_[i - 1].grey) / means_[i].grey);
   if (changes.size() < kEnough) return 0;
-  return calib::kSigmaPerMad * calib::median(std::move(changes)) / std::sqrt(2.0);
+  return kSigmaPerMad * median(std::move(changes)) / std::sqrt(2.0);
 }
 
 double HandLight::leak() const {

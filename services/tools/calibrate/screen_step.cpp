@@ -10,6 +10,7 @@
 #include "calib/solve/screen/depth_error.hpp"
 #include "calib/solve/screen/statistics.hpp"
 #include "ipc/base/number_text.hpp"
+#include "ipc/base/statistics.hpp"
 #include "services/tools/calibrate/by_hand.hpp"
 #include "services/tools/calibrate/gamma.hpp"
 #include "services/tools/calibrate/light_delay.hpp"

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "renderer/content/lettering.hpp"
 
@@ -19,10 +19,6 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kRepeatEvery_ns = 250'000'000;
 constexpr std::size_t kPeriods = 31;  ///< whose median is the rhythm of the frames
-
-std::int64_t median_of(const std::deque<std::int64_t>& times_ns) {
-  return std::llround(calib::median({times_ns.begin(), times_ns.end()}));
-}
 
 using Levels = renderer::Image<std::uint8_t>;
 
@@ -169,7 +165,7 @@ Result<FirstLight> TestScreen::first_light(Deadline deadline) {
       deadline = Deadline::in(kStart);  // the picture may have expired meanwhile
     const bool is_sure = follow(**shown);
     if ((*shown)->test_picture == number_)
-      return FirstLight{(*shown)->lit_ns, median_of(periods_ns_), is_sure};
+      return FirstLight{(*shown)->lit_ns, median(periods_ns_), is_sure};
     keep();
   }
 }

@@ -7,11 +7,10 @@
 #include <random>
 
 #include "config/settings/choice.hpp"
+#include "tests/milliseconds.hpp"
 
 namespace handcast::renderer {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 config::Filter settings(const char* method, double blend_ms = 0) {
   config::Filter filter;

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "config/settings/choice.hpp"
+#include "tests/milliseconds.hpp"
 
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kOneMs = 1'000'000;
 constexpr int kTip = 8;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
                 kInfinity = std::numeric_limits<float>::infinity();
@@ -39,9 +39,9 @@ class SharedOffset : public testing::TestWithParam<const char*> {
       seen.points[i] = {still[i].x + offsets_[i].x, still[i].y + offsets_[i].y, 1, sigmas_[i]};
     filter->tracker_is(tracker);
     for (int ms = 0; ms < 200; ms += 4)
-      filter->detection(ms * kOneMs, (ms - 4) * kOneMs, seen,
+      filter->detection(ms * kMs, (ms - 4) * kMs, seen,
                         [&](std::int64_t) { return std::optional(still); });
-    Offsets moved = *filter->at(200 * kOneMs, 204 * kOneMs, still);
+    Offsets moved = *filter->at(200 * kMs, 204 * kMs, still);
     for (int i = 0; i < kLandmarks; ++i) moved[i] -= still[i];
     return moved;
   }

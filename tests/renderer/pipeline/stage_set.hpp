@@ -10,14 +10,13 @@
 #include "renderer/pipeline/pipeline.hpp"
 #include "renderer/skin/skinning.hpp"
 #include "services/lab/hand_maker/hand_shape.hpp"
+#include "tests/milliseconds.hpp"
 #include "tests/renderer/hand_pose.hpp"
 
 /// @file
 /// A scene for tests of the pipeline: poses, landmarks and images of the default hands.
 
 namespace handcast::renderer {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 /// The paper's rig, with tracker space equal to model space: the camera sees the back of the hand
 /// from 0.55 m, fingers up.

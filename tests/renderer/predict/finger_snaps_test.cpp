@@ -8,12 +8,12 @@
 #include <optional>
 
 #include "renderer/base/joint_math.hpp"
+#include "tests/milliseconds.hpp"
 #include "tests/renderer/pipeline/stage_set.hpp"
 
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kSnapMs = 1'000'000;
 constexpr int kIndex = 7, kTip = 10;  ///< joints of the index finger
 
 /// An open left hand at `moved_m`, whose index finger is bent at the knuckle.
@@ -47,11 +47,11 @@ class Fingers {
     std::optional<msg::HandPose> held;
     for (std::int64_t ms = 0; ms <= last_ms; ms += 10) {
       if (const auto deg = seen_deg(ms + 8)) {
-        auto seen = landmarks_of(calibration_, (ms + 8) * kSnapMs, hand(*deg, way(ms + 8)), {0, 0});
+        auto seen = landmarks_of(calibration_, (ms + 8) * kMs, hand(*deg, way(ms + 8)), {0, 0});
         for (int i = 0; i < kLandmarks; ++i) seen.hands[0].points[i].x_px += beside_px(i);
-        snaps.detection((ms + 8) * kSnapMs, seen.hands[0]);
+        snaps.detection((ms + 8) * kMs, seen.hands[0]);
       }
-      if (samples(ms)) held = snaps.held(ms * kSnapMs, hand(tracked_deg(ms), way(ms)), moved_px());
+      if (samples(ms)) held = snaps.held(ms * kMs, hand(tracked_deg(ms), way(ms)), moved_px());
     }
     return tip_apart_m(*held, hand(seen_deg(last_ms).value_or(0), way(last_ms)));
   }
@@ -145,12 +145,12 @@ TEST(FingerSnaps, LandmarksOlderThanTheSnapSayNothing) {
 
 TEST(FingerSnaps, AFingerThatTheTrackerTakesForItsNeighbourIsNotHeldOnAWrongKnuckle) {
   FingerSnaps snaps(rig_above_hand());
-  const auto seen = landmarks_of(rig_above_hand(), 12 * kSnapMs, hand(0), {0, 0}).hands[0];
+  const auto seen = landmarks_of(rig_above_hand(), 12 * kMs, hand(0), {0, 0}).hands[0];
   auto wrong = hand(0);
   for (int k = 0; k < 4; ++k) wrong.joints[kIndex + 5 + k] = wrong.joints[kIndex + 10 + k];
-  for (int ms = 0; ms < 100; ms += 10) snaps.held(ms * kSnapMs, hand(0), {});
-  snaps.detection(102 * kSnapMs, seen);
-  const auto held = snaps.held(100 * kSnapMs, wrong, {});
+  for (int ms = 0; ms < 100; ms += 10) snaps.held(ms * kMs, hand(0), {});
+  snaps.detection(102 * kMs, seen);
+  const auto held = snaps.held(100 * kMs, wrong, {});
   for (int j = kIndex + 5; j < kIndex + 9; ++j)
     EXPECT_LT(glm::distance(position(held.joints[j]), position(wrong.joints[j])), 1e-6f);
 }
@@ -172,30 +172,28 @@ TEST(FingerSnaps, AFingerThatIsNearlyBackIsLetGo) {
 /// A tracker and an image that have shown a resting hand for 100 ms.
 FingerSnaps after_rest() {
   FingerSnaps snaps(rig_above_hand());
-  for (int ms = 0; ms < 100; ms += 10) snaps.held(ms * kSnapMs, hand(0), {});
-  snaps.detection(102 * kSnapMs,
-                  landmarks_of(rig_above_hand(), 102 * kSnapMs, hand(0), {0, 0}).hands[0]);
+  for (int ms = 0; ms < 100; ms += 10) snaps.held(ms * kMs, hand(0), {});
+  snaps.detection(102 * kMs, landmarks_of(rig_above_hand(), 102 * kMs, hand(0), {0, 0}).hands[0]);
   return snaps;
 }
 
 TEST(FingerSnaps, AStepThatTheImageWouldHardlyShowIsNotHeld) {
   auto raised = hand(0);
   for (int j = kIndex + 1; j <= kTip; ++j) raised.joints[j].position_m[1] += 0.01f;
-  EXPECT_LT(tip_apart_m(after_rest().held(100 * kSnapMs, raised, {}), raised), 1e-6f);
+  EXPECT_LT(tip_apart_m(after_rest().held(100 * kMs, raised, {}), raised), 1e-6f);
 }
 
 TEST(FingerSnaps, AnImageThatComesLateDoesNotReplaceANewerOne) {
   auto snaps = after_rest();
-  snaps.detection(50 * kSnapMs,
-                  landmarks_of(rig_above_hand(), 50 * kSnapMs, hand(25), {0, 0}).hands[0]);
-  EXPECT_LT(tip_apart_m(snaps.held(100 * kSnapMs, hand(25), {}), hand(0)), 1e-4f);
+  snaps.detection(50 * kMs, landmarks_of(rig_above_hand(), 50 * kMs, hand(25), {0, 0}).hands[0]);
+  EXPECT_LT(tip_apart_m(snaps.held(100 * kMs, hand(25), {}), hand(0)), 1e-4f);
 }
 
 TEST(FingerSnaps, NothingIsHeldAfterAllWasForgotten) {
   auto snaps = after_rest();
-  ASSERT_LT(tip_apart_m(snaps.held(100 * kSnapMs, hand(25), {}), hand(0)), 1e-4f);
+  ASSERT_LT(tip_apart_m(snaps.held(100 * kMs, hand(25), {}), hand(0)), 1e-4f);
   snaps.forget();
-  EXPECT_EQ(tip_apart_m(snaps.held(110 * kSnapMs, hand(25), {}), hand(25)), 0);
+  EXPECT_EQ(tip_apart_m(snaps.held(110 * kMs, hand(25), {}), hand(25)), 0);
 }
 
 TEST(FingerSnaps, BrokenAndOldSamplesChangeNothing) {
@@ -204,11 +202,10 @@ TEST(FingerSnaps, BrokenAndOldSamplesChangeNothing) {
   auto broken = hand(0);
   broken.joints[1].position_m[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(tip_apart_m(snaps.held(0, broken, moved_px), hand(0)), 0);
-  EXPECT_EQ(tip_apart_m(snaps.held(10 * kSnapMs, hand(0), moved_px), hand(0)), 0);
-  for (const int ms : {20, 30}) snaps.held(ms * kSnapMs, hand(0), moved_px);
-  snaps.detection(32 * kSnapMs,
-                  landmarks_of(rig_above_hand(), 32 * kSnapMs, hand(0), {0, 0}).hands[0]);
-  EXPECT_EQ(tip_apart_m(snaps.held(25 * kSnapMs, hand(25), moved_px), hand(25)), 0);
+  EXPECT_EQ(tip_apart_m(snaps.held(10 * kMs, hand(0), moved_px), hand(0)), 0);
+  for (const int ms : {20, 30}) snaps.held(ms * kMs, hand(0), moved_px);
+  snaps.detection(32 * kMs, landmarks_of(rig_above_hand(), 32 * kMs, hand(0), {0, 0}).hands[0]);
+  EXPECT_EQ(tip_apart_m(snaps.held(25 * kMs, hand(25), moved_px), hand(25)), 0);
 }
 
 }  // namespace

@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/milliseconds.hpp"
+
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kBlendMs = 1'000'000;
 constexpr float kSpeed_px_ms = 1;
 
 LandmarkPoints at_x(float x_px) {
@@ -22,9 +23,8 @@ struct HandOver {
   float step(JumpBlend& blend, int ms) const {
     const auto wanted = at_x(kSpeed_px_ms * static_cast<float>(ms) + offset_px(ms));
     const bool alone = ms >= 100 && ms < 200;
-    if (alone) return blend.follow(ms * kBlendMs, wanted, ms == 100)[0].x;
-    return blend.smooth(ms * kBlendMs, wanted, at_x(kSpeed_px_ms * static_cast<float>(ms - 1)))[0]
-        .x;
+    if (alone) return blend.follow(ms * kMs, wanted, ms == 100)[0].x;
+    return blend.smooth(ms * kMs, wanted, at_x(kSpeed_px_ms * static_cast<float>(ms - 1)))[0].x;
   }
 };
 
@@ -45,7 +45,7 @@ TEST(JumpBlend, ARowThatGoesOverFromOneSourceToAnotherAndBackDoesNotJump) {
 TEST(JumpBlend, WithoutNewsNothingIsHeldBack) {
   JumpBlend blend(6, 8);
   for (int ms = 0; ms < 50; ++ms)
-    EXPECT_EQ(blend.follow(ms * kBlendMs, at_x(static_cast<float>(ms * ms)), false)[0].x, ms * ms);
+    EXPECT_EQ(blend.follow(ms * kMs, at_x(static_cast<float>(ms * ms)), false)[0].x, ms * ms);
 }
 
 }  // namespace

@@ -7,10 +7,10 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 
+#include "tests/milliseconds.hpp"
+
 namespace handcast::renderer {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 /// All joints at `at`, rotated by `angle` about z.
 msg::HandPose pose_at(glm::vec3 at, float angle = 0) {

@@ -16,7 +16,6 @@ namespace handcast::projector {
 namespace {
 
 using config::Packing;
-using renderer::kMs;
 
 constexpr std::int64_t kStart_ns = 400 * kMs;
 

@@ -6,11 +6,10 @@
 #include <unistd.h>
 
 #include "ipc/ring/reader.hpp"
+#include "tests/milliseconds.hpp"
 
 namespace handcast::projector {
 namespace {
-
-constexpr std::int64_t kMessageMs = 1'000'000;
 
 /// 4 sub-frames of 5 ms.
 config::Projector settings() {
@@ -31,8 +30,7 @@ class SubFrameMessagesTest : public testing::Test {
     frame.colour = pixels.view();
     frame.region = {1, 2, 2, 3};
     frame.target_ns = target_ns;
-    const msg::StageMark mark{msg::Stage::frame, 0, target_ns - 9 * kMessageMs,
-                              target_ns - 8 * kMessageMs};
+    const msg::StageMark mark{msg::Stage::frame, 0, target_ns - 9 * kMs, target_ns - 8 * kMs};
     frame.stages = {&mark, 1};
     messages_.keep(frame, count);
   }
@@ -60,8 +58,8 @@ class SubFrameMessagesTest : public testing::Test {
 TEST_F(SubFrameMessagesTest, EachSubFrameHasAMessageWithItsOwnTargetAndLight) {
   for (std::uint32_t k = 0; k < 4; ++k) draw(k, 50 + k, 1);
   EXPECT_THAT(seen(), testing::IsEmpty()) << "the time of the light is not yet known";
-  messages_.handed_over(plan_, 40, {100 * kMessageMs, 113 * kMessageMs});
-  messages_.publish(1000 * kMessageMs);
+  messages_.handed_over(plan_, 40, {100 * kMs, 113 * kMs});
+  messages_.publish(1000 * kMs);
   EXPECT_THAT(seen(),
               testing::ElementsAre(Seen{40, 0, 50, 105'500'000}, Seen{41, 1, 51, 110'500'000},
                                    Seen{42, 2, 52, 115'500'000}, Seen{43, 3, 53, 120'500'000}));
@@ -70,12 +68,12 @@ TEST_F(SubFrameMessagesTest, EachSubFrameHasAMessageWithItsOwnTargetAndLight) {
 
 TEST_F(SubFrameMessagesTest, TheMessagesComeAtTheRateOfTheLight) {
   for (std::uint32_t k = 0; k < 4; ++k) draw(k, 50, 1);
-  messages_.handed_over(plan_, 0, {100 * kMessageMs, 113 * kMessageMs});
-  EXPECT_EQ(messages_.due_ns(), 100 * kMessageMs);
-  messages_.publish(100 * kMessageMs);
+  messages_.handed_over(plan_, 0, {100 * kMs, 113 * kMs});
+  EXPECT_EQ(messages_.due_ns(), 100 * kMs);
+  messages_.publish(100 * kMs);
   EXPECT_EQ(seen().size(), 1u);
-  EXPECT_EQ(messages_.due_ns(), 105 * kMessageMs);
-  messages_.publish(110 * kMessageMs);
+  EXPECT_EQ(messages_.due_ns(), 105 * kMs);
+  messages_.publish(110 * kMs);
   EXPECT_EQ(seen().size(), 2u);
 }
 
@@ -83,8 +81,8 @@ TEST_F(SubFrameMessagesTest, ADrawingInSeveralSubFramesIsJudgedInEachAndMarkedOn
   draw(7, 50, 1);
   draw(8, 60, 2);
   messages_.extend(1);
-  messages_.handed_over(plan_, 4, {100 * kMessageMs, 113 * kMessageMs});
-  messages_.publish(1000 * kMessageMs);
+  messages_.handed_over(plan_, 4, {100 * kMs, 113 * kMs});
+  messages_.publish(1000 * kMs);
   EXPECT_THAT(seen(),
               testing::ElementsAre(Seen{4, 7, 50, 105'500'000}, Seen{5, 8, 60, 110'500'000},
                                    Seen{6, 8, 60, 115'500'000}, Seen{7, 8, 60, 120'500'000}));
@@ -93,11 +91,11 @@ TEST_F(SubFrameMessagesTest, ADrawingInSeveralSubFramesIsJudgedInEachAndMarkedOn
 
 TEST_F(SubFrameMessagesTest, NoMessageIsLostIfTheNextOutputFrameIsHandedOverEarly) {
   draw(1, 50, 4);
-  messages_.handed_over(plan_, 0, {100 * kMessageMs, 113 * kMessageMs});
+  messages_.handed_over(plan_, 0, {100 * kMs, 113 * kMs});
   draw(2, 60, 4);
-  messages_.handed_over(plan_, 4, {101 * kMessageMs, 114 * kMessageMs});
+  messages_.handed_over(plan_, 4, {101 * kMs, 114 * kMs});
   EXPECT_EQ(seen().size(), 4u);
-  messages_.publish(1000 * kMessageMs);
+  messages_.publish(1000 * kMs);
   EXPECT_EQ(seen().size(), 4u);
 }
 
@@ -105,8 +103,8 @@ TEST_F(SubFrameMessagesTest, AnOutputFrameThatWasNotShownIsNotPublished) {
   draw(1, 50, 4);
   messages_.drop();
   draw(2, 60, 4);
-  messages_.handed_over(plan_, 4, {100 * kMessageMs, 113 * kMessageMs});
-  messages_.publish(1000 * kMessageMs);
+  messages_.handed_over(plan_, 4, {100 * kMs, 113 * kMs});
+  messages_.publish(1000 * kMs);
   for (const auto& [id, pixel, target_ns, display_ns] : seen()) EXPECT_EQ(pixel, 2u);
 }
 

@@ -3,15 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/milliseconds.hpp"
+
 namespace handcast::supervisor {
 namespace {
 
 constexpr std::int64_t kOneSecond_ns = 1'000'000'000;
-constexpr std::int64_t kMs_ns = 1'000'000;
 
-msg::StageMarks frame_at(std::int64_t time_ns, std::int64_t span_ns = kMs_ns) {
+msg::StageMarks frame_at(std::int64_t time_ns, std::int64_t span_ns = kMs) {
   msg::StageMarks marks;
-  marks.header = {.frame_id = 1, .origin_ns = time_ns - 5 * kMs_ns, .published_ns = time_ns};
+  marks.header = {.frame_id = 1, .origin_ns = time_ns - 5 * kMs, .published_ns = time_ns};
   marks.count = 1;
   marks.marks[0] = {
       .stage = msg::Stage::draw, .detail = 0, .begin_ns = time_ns - span_ns, .end_ns = time_ns};
@@ -159,7 +160,7 @@ TEST(Ledger, TheRecentRateIsThatOfTheLastTwoSeconds) {
   Ledger ledger;
   const auto start = 100 * kOneSecond_ns;
   for (int i = 0; i < 400; ++i)
-    ledger.add("camera", frame_at(start + i * 10 * kMs_ns));  // 100 Hz for 4 s
+    ledger.add("camera", frame_at(start + i * 10 * kMs));  // 100 Hz for 4 s
   EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 4 * kOneSecond_ns), 100, 1);
   EXPECT_NEAR(ledger.frames("camera").recent_hz(start + 5 * kOneSecond_ns), 50, 1)
       << "nothing came for a second";
@@ -172,7 +173,7 @@ TEST(Ledger, TheHeldRateLeavesOutTheFirstSecondAndCountsInterruptions) {
   const auto start = 100 * kOneSecond_ns;
   ledger.add("camera", frame_at(start));  // a slow first second: one frame
   for (int i = 0; i < 200; ++i)
-    ledger.add("camera", frame_at(start + kOneSecond_ns + i * 10 * kMs_ns));  // then 100 Hz for 2 s
+    ledger.add("camera", frame_at(start + kOneSecond_ns + i * 10 * kMs));  // then 100 Hz for 2 s
   EXPECT_NEAR(ledger.frames("camera").held_hz(start + 3 * kOneSecond_ns), 100, 0.5);
   EXPECT_NEAR(ledger.frames("camera").held_hz(start + 5 * kOneSecond_ns), 50, 0.5)
       << "silent for the last two of four seconds";
@@ -182,7 +183,7 @@ TEST(Ledger, FramesWhoseMarksWereOverwrittenAreCounted) {
   Ledger ledger;
   const auto start = 100 * kOneSecond_ns;
   for (int i = 0; i <= 40; ++i)
-    ledger.add("projector", frame_at(start + i * 100 * kMs_ns),
+    ledger.add("projector", frame_at(start + i * 100 * kMs),
                i > 0 ? 89 : 0);  // 900 Hz, one in 90 seen
   EXPECT_EQ(ledger.frames("projector").total(), 40u * 90 + 1);
   EXPECT_NEAR(ledger.frames("projector").recent_hz(start + 4 * kOneSecond_ns), 900, 10);
@@ -193,15 +194,14 @@ TEST(Ledger, FramesWhoseMarksWereOverwrittenAreCounted) {
 TEST(Ledger, TheNewestAgeIsThatOfTheLastFramesOrigin) {
   Ledger ledger;
   ledger.add("pose", frame_at(kOneSecond_ns));
-  EXPECT_DOUBLE_EQ(ledger.frames("pose").newest_age_ms(kOneSecond_ns + 3 * kMs_ns).value(), 8.0);
+  EXPECT_DOUBLE_EQ(ledger.frames("pose").newest_age_ms(kOneSecond_ns + 3 * kMs).value(), 8.0);
   EXPECT_FALSE(ledger.frames("camera").newest_age_ms(kOneSecond_ns).has_value());
 }
 
 TEST(Ledger, StageTimesForgetWhatIsOlderThanTenSecondsButTheWholeRunDoesNot) {
   Ledger ledger;
   for (int second = 0; second < 30; ++second)
-    ledger.add("projector",
-               frame_at((100 + second) * kOneSecond_ns, second < 15 ? 8 * kMs_ns : kMs_ns));
+    ledger.add("projector", frame_at((100 + second) * kOneSecond_ns, second < 15 ? 8 * kMs : kMs));
   const auto& draw = ledger.stages().at("draw");
   EXPECT_EQ(draw.whole_run().count(), 30u);
   EXPECT_EQ(draw.recent(129 * kOneSecond_ns).count(), 10u);

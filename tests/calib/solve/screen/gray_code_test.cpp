@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "calib/solve/screen/statistics.hpp"
+#include "ipc/base/statistics.hpp"
 #include "tests/calib/solve/screen/rendered_board.hpp"
 
 namespace handcast::calib {

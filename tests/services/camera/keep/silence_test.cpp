@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/milliseconds.hpp"
+
 namespace handcast::camera {
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 TEST(Silence, IsTooLongAfterThreePeriodsButAtLeastFiftyMilliseconds) {
   EXPECT_EQ(Silence::patience_of(500), 50 * kMs);

@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/milliseconds.hpp"
+
 namespace handcast::camera::v4l2 {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
 constexpr StreamTimes kStream{.exposure = {.time_ns = 4 * kMs, .error_ns = kMs / 10},
                               .delivery_ns = 3 * kMs,
                               .period_ns = 8 * kMs};

@@ -4,15 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "ipc/base/clock.hpp"
+#include "tests/milliseconds.hpp"
 
 namespace handcast::pose::stereo {
 namespace {
 
-constexpr std::int64_t kMs_ns = 1'000'000;
-
 msg::Landmarks of(std::int64_t origin_ms) {
   msg::Landmarks landmarks;
-  landmarks.header.origin_ns = origin_ms * kMs_ns;
+  landmarks.header.origin_ns = origin_ms * kMs;
   return landmarks;
 }
 
@@ -21,7 +20,7 @@ std::array<std::int64_t, kViews> origins(const std::optional<Pair>& pair) {
   if (!pair) return {-2, -2};
   std::array<std::int64_t, kViews> ms{-1, -1};
   for (std::size_t v = 0; v < ms.size(); ++v)
-    if ((*pair)[v]) ms[v] = (*pair)[v]->header.origin_ns / kMs_ns;
+    if ((*pair)[v]) ms[v] = (*pair)[v]->header.origin_ns / kMs;
   return ms;
 }
 using Origins = std::array<std::int64_t, kViews>;
@@ -29,9 +28,9 @@ using Origins = std::array<std::int64_t, kViews>;
 class PairingTest : public testing::Test {
  protected:
   void push(int view, std::int64_t origin_ms, std::int64_t at_ms) {
-    pairing_.push(view, of(origin_ms), at_ms * kMs_ns);
+    pairing_.push(view, of(origin_ms), at_ms * kMs);
   }
-  Origins take(std::int64_t at_ms) { return origins(pairing_.take(at_ms * kMs_ns)); }
+  Origins take(std::int64_t at_ms) { return origins(pairing_.take(at_ms * kMs)); }
   static constexpr Origins kNone{-2, -2};
 
   Pairing pairing_{config::PoseStereo{.pair_ms = 8, .wait_ms = 6}};
@@ -47,7 +46,7 @@ TEST_F(PairingTest, LandmarksOfImagesOfOneTimeAreOneSampleAtOnce) {
 
 TEST_F(PairingTest, LandmarksDoNotWaitLongerThanWaitMs) {
   push(1, 100, 105);
-  EXPECT_EQ(pairing_.due_ns(), 111 * kMs_ns);
+  EXPECT_EQ(pairing_.due_ns(), 111 * kMs);
   EXPECT_EQ(take(110), kNone);
   EXPECT_EQ(take(111), (Origins{-1, 100}));
   EXPECT_FALSE(pairing_.due_ns());

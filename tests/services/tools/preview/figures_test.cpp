@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/tools/preview/status_gauges.hpp"
+#include "tests/milliseconds.hpp"
 
 namespace handcast::preview {
 namespace {
@@ -12,8 +13,6 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 using testing::IsEmpty;
-
-constexpr std::int64_t kMs = 1'000'000;
 
 TEST(Series, KeepsTheNewestValues) {
   Series series(3);

@@ -4,11 +4,11 @@
 #include "ipc/msg/owned.hpp"
 #include "ipc/msg/projection.hpp"
 #include "services/tools/preview/scene/scene_maker.hpp"
+#include "tests/milliseconds.hpp"
 
 /// Messages and worlds for the tests of the preview.
 namespace handcast::preview::test {
 
-inline constexpr std::int64_t kMs = 1'000'000;
 inline constexpr std::int64_t kImage_ns = 1000 * kMs;
 
 /// The reference rig, whose hands are squares of four vertices.
