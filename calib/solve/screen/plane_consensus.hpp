@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "calib/calibration.hpp"
+#include "calib/projector_model.hpp"
 #include "calib/solve/screen/projective_fit.hpp"
 #include "ipc/base/result.hpp"
 

@@ -57,7 +57,7 @@ ProjectorModel model_of(const Vector& unknowns, const Scaling& scaling, double p
   const glm::dvec3 parallax(unknowns[8], unknowns[9], unknowns[10]);
   const auto back = glm::inverse(scaling.projector);
   return ProjectorModel{back * homography * scaling.camera, back * parallax * scaling.inverse_depth,
-                     plane_m}
+                        plane_m}
       .normalised();
 }
 
@@ -110,7 +110,7 @@ double residual_px(const ProjectorModel& model, const Observation& observation) 
 }
 
 ProjectorModel refined(const ProjectorModel& start, std::span<const Observation> observations,
-                    Unknowns unknowns) {
+                       Unknowns unknowns) {
   constexpr Effort kEffort{.steps = 30, .done = 1e-10};
   const auto scaling = scaling_of(observations, start.plane_m);
   Vector best = unknowns_of(start, scaling);

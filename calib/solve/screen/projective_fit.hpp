@@ -33,7 +33,7 @@ double residual_px(const ProjectorModel& model, const Observation& observation);
 /// homography must be finite and of the right orientation. The result is not finite if the
 /// observations do not determine the unknowns.
 ProjectorModel refined(const ProjectorModel& start, std::span<const Observation> observations,
-                    Unknowns unknowns);
+                       Unknowns unknowns);
 
 /// The fits that other weights of the blocks would give: one Gauss-Newton step from the fit to all
 /// of them. A step is exact up to the curvature of the model, which is small next to the noise, and

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "calib/solve/screen/depth_error.hpp"
-#include "calib/solve/screen/statistics.hpp"
 #include "ipc/base/number_text.hpp"
 #include "ipc/base/statistics.hpp"
 #include "services/tools/calibrate/by_hand.hpp"
