@@ -134,7 +134,7 @@ TEST_F(ReplayCamera, SaysWhichPictureHasAnotherSize) {
 
 TEST_F(ReplayCamera, SaysWhichFileIsNoPicture) {
   std::ofstream(scratch_.path() / "0001.png") << "not a picture";
-  expect_refused("0001.png' is not a PNG picture");
+  expect_refused("0001.png' is not a PNG or JPEG picture");
 }
 
 TEST_F(ReplayCamera, SaysWhenTimesAndPicturesDoNotPair) {
