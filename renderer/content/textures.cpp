@@ -237,4 +237,15 @@ Result<Texture> load_content(const std::string& what, const HandMesh& hand) {
                                             name, kBuiltinNames));
 }
 
+std::string note_on_proportions(const std::string& what, const Texture& picture) {
+  constexpr double kSame = 0.01;
+  const double wider = static_cast<double>(picture.width()) * kHeight / picture.height() / kWidth;
+  if (std::abs(wider - 1) <= kSame) return {};
+  return fmt::format(
+      "the picture '{}' has {} x {} px, its template {} x {}: it is stretched to {:.0f} % of its "
+      "{}; paint on the template, which `handcast template` writes",
+      what, picture.width(), picture.height(), kWidth, kHeight, 100 * std::max(wider, 1 / wider),
+      wider > 1 ? "height" : "width");
+}
+
 }  // namespace handcast::renderer

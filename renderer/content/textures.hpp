@@ -15,4 +15,8 @@ namespace handcast::renderer {
 /// (bad_config): see read_picture(), or no such name.
 Result<Texture> load_content(const std::string& what, const HandMesh& hand);
 
+/// What to say about a picture of other proportions than the template of handcast's own hands, onto
+/// which it is stretched. Empty if they differ by 1 % at most.
+std::string note_on_proportions(const std::string& what, const Texture& picture);
+
 }  // namespace handcast::renderer

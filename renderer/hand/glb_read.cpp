@@ -2,12 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
+#include <map>
 #include <optional>
+#include <utility>
 
+#include "ipc/base/log.hpp"
 #include "renderer/hand/gltf_file.hpp"
+#include "renderer/hand/hand_axes.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/hand/mesh_charts.hpp"
 #include "renderer/hand/mesh_checks.hpp"
@@ -120,19 +126,49 @@ class ArrayReader {
   std::optional<std::string> trouble_;
 };
 
-/// The spelling of WebXR for names such as "Left_Index-Finger-Tip" and "r-little-finger-tip".
-std::string plain_name(std::string name) {
-  for (char& c : name)
-    c = c == '_' || c == ' ' || c == '.'
-            ? '-'
-            : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const std::string_view prefix : {"left-", "right-", "l-", "r-"})
-    if (name.starts_with(prefix)) {
-      name.erase(0, prefix.size());
-      break;
+/// The parts of a joint's name that say which one it is, and its side.
+struct JointName {
+  std::string key;           ///< "index-proximal"
+  std::optional<Side> side;  ///< if the name says one
+};
+
+/// Reads the names of WebXR and OpenXR and what other programs make of them:
+/// "Left_Index-Finger-Tip", "r-little-finger-tip", "wrist.L", "wrist.L.001", "LeftIndexProximal".
+JointName parse_name(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto c = static_cast<unsigned char>(name[i]);
+    const bool begins =
+        std::isupper(c) && i > 0 && std::islower(static_cast<unsigned char>(name[i - 1]));
+    if (begins || !std::isalnum(c)) words.emplace_back();
+    if (std::isalnum(c)) words.back() += static_cast<char>(std::tolower(c));
+  }
+  JointName parsed;
+  for (auto& word : words) {
+    constexpr std::array<std::string_view, 6> kFillers{"",   "finger", "phalanx",
+                                                       "xr", "hand",   "joint"};
+    if (word == "l" || word == "left")
+      parsed.side = Side::left;
+    else if (word == "r" || word == "right")
+      parsed.side = Side::right;
+    else if (std::ranges::find(kFillers, word) == kFillers.end() &&
+             !std::isdigit(static_cast<unsigned char>(word[0]))) {
+      if (word == "little") word = "pinky";
+      parsed.key += (parsed.key.empty() ? "" : "-") + word;
     }
-  if (name.starts_with("little-")) name.replace(0, 6, "pinky");
-  return name;
+  }
+  return parsed;
+}
+
+/// The index into kJointNames; -1 if no joint has this key.
+int joint_of(const std::string& key) {
+  static const auto keys = [] {
+    std::array<std::string, kJoints> all;
+    for (int j = 0; j < kJoints; ++j) all[j] = parse_name(std::string(kJointNames[j])).key;
+    return all;
+  }();
+  const auto found = std::ranges::find(keys, key);
+  return found == keys.end() ? -1 : static_cast<int>(found - keys.begin());
 }
 
 /// True for the palm, the tips and the metacarpals of the fingers, which move little or no skin.
@@ -141,51 +177,148 @@ bool may_be_missing(int joint) {
   return name == "palm" || name.ends_with("-tip") || name.ends_with("finger-metacarpal");
 }
 
-/// True for a rotation and a translation. False if a number is not finite: comparisons with NaN are
-/// false.
-bool is_rigid(const glm::mat4& transform) {
+/// The scale of a transform without shear or reflection; 0 of others, also if a number is not
+/// finite: comparisons with NaN are false.
+float scale_of(const glm::mat4& transform) {
   constexpr float kTolerance = 1e-2f;
   const glm::mat3 axes(transform);
-  const glm::mat3 off = glm::transpose(axes) * axes - glm::mat3(1);
+  const float scale = std::cbrt(glm::determinant(axes));
+  if (!(scale > 1e-6f && scale < 1e6f)) return 0;
+  const glm::mat3 off = glm::transpose(axes) * axes / (scale * scale) - glm::mat3(1);
   for (int k = 0; k < 9; ++k)
-    if (!(std::abs(off[k / 3][k % 3]) < kTolerance)) return false;
-  return glm::determinant(axes) > 0 && std::isfinite(glm::dot(transform[3], transform[3]));
+    if (!(std::abs(off[k / 3][k % 3]) < kTolerance)) return 0;
+  return std::isfinite(glm::dot(transform[3], transform[3])) ? scale : 0;
 }
 
-/// Fills hand.rest. Returns the index into kJointNames of each joint of the skin; joints with
-/// unknown names become the wrist.
-std::vector<std::uint8_t> read_skeleton(ArrayReader& reader, const tinygltf::Model& model,
-                                        const tinygltf::Skin& skin, HandMesh& hand) {
-  std::vector<std::uint8_t> ours(skin.joints.size(), 1);
-  std::array<bool, kJoints> found{};
+constexpr std::size_t kDeepest = 64;  ///< parents of a node that are looked at
+
+/// The scale of a node's space in that of the scene.
+double scale_of_node(const tinygltf::Model& model, int node) {
+  double cubed = 1;
+  for (std::size_t depth = 0; node >= 0 && depth < kDeepest; ++depth) {
+    const auto& each = model.nodes[static_cast<std::size_t>(node)];
+    if (each.matrix.size() == 16)
+      cubed *= glm::determinant(glm::dmat3(glm::make_mat4(each.matrix.data())));
+    for (const double scale : each.scale) cubed *= scale;
+    const auto parent = std::ranges::find_if(model.nodes, [&](const auto& other) {
+      return std::ranges::find(other.children, node) != other.children.end();
+    });
+    node = parent == model.nodes.end() ? -1 : static_cast<int>(parent - model.nodes.begin());
+  }
+  return std::cbrt(std::abs(cubed));
+}
+
+/// A joint of a skin that belongs to the other hand.
+constexpr std::uint8_t kForeign = 255;
+
+/// What a skinned mesh of a file is as the hand of a side.
+struct Candidate {
+  HandMesh hand;
+  FoundJoints found{};
+  std::vector<std::uint8_t> ours;    ///< per joint of the skin: index into kJointNames, or kForeign
+  std::vector<std::uint32_t> alien;  ///< vertices that move with the other hand, ascending
+  float scale = 1;                   ///< from the mesh to metres
+  std::size_t covered = 0;           ///< number of joints that move some of its vertices
+};
+
+/// The joint of each joint of the skin: by its name, else that of its nearest parent with a known
+/// one, else the wrist.
+std::vector<std::uint8_t> joints_of(const tinygltf::Model& model, const tinygltf::Skin& skin,
+                                    Side side) {
+  std::map<int, std::uint8_t> of_node;
+  std::array<bool, kJoints> taken{};
+  for (const int node : skin.joints) {
+    const auto name = parse_name(model.nodes[static_cast<std::size_t>(node)].name);
+    const int joint = joint_of(name.key);
+    if (joint < 0) continue;
+    if (name.side && *name.side != side)
+      of_node[node] = kForeign;
+    else if (!std::exchange(taken[static_cast<std::size_t>(joint)], true))
+      of_node[node] = static_cast<std::uint8_t>(joint);
+  }
+  std::map<int, int> parent_of;
+  for (std::size_t node = 0; node < model.nodes.size(); ++node)
+    for (const int child : model.nodes[node].children)
+      parent_of.try_emplace(child, static_cast<int>(node));
+  std::vector<std::uint8_t> joints;
+  for (int node : skin.joints) {
+    for (std::size_t depth = 0; depth < kDeepest && !of_node.contains(node); ++depth) {
+      const auto parent = parent_of.find(node);
+      if (parent == parent_of.end()) break;
+      node = parent->second;
+    }
+    joints.push_back(of_node.contains(node) ? of_node[node] : std::uint8_t{1});
+  }
+  return joints;
+}
+
+/// The names of a skin's joints, for a message.
+std::string names_of(const tinygltf::Model& model, const tinygltf::Skin& skin) {
+  constexpr std::size_t kMost = 4;
+  std::string names;
+  for (std::size_t k = 0; k < std::min(skin.joints.size(), kMost); ++k)
+    names += fmt::format("{}'{}'", k == 0 ? "" : ", ",
+                         model.nodes[static_cast<std::size_t>(skin.joints[k])].name.substr(0, 40));
+  return names + (skin.joints.size() > kMost ? ", …" : "");
+}
+
+/// Fills rest, found, ours and scale.
+void read_skeleton(ArrayReader& reader, const tinygltf::Model& model, const tinygltf::Skin& skin,
+                   Candidate& candidate) {
+  auto& rest = candidate.hand.rest;
+  auto& found = candidate.found;
+  for (const int node : skin.joints)
+    if (node < 0 || node >= std::ssize(model.nodes))
+      return reader.complain("its skin refers to a node that does not exist");
   const auto inverse = reader.read<float>(skin.inverseBindMatrices, 16, "inverse bind matrices");
   if (inverse.size() < skin.joints.size() * 16)
-    return reader.complain("it has fewer inverse bind matrices than joints"), ours;
+    return reader.complain("it has fewer inverse bind matrices than joints");
+  candidate.ours = joints_of(model, skin, candidate.hand.side);
+  std::array<float, kJoints> scales{};
   for (std::size_t k = 0; k < skin.joints.size(); ++k) {
     const int node = skin.joints[k];
-    if (node < 0 || node >= std::ssize(model.nodes))
-      return reader.complain("its skin refers to a node that does not exist"), ours;
-    const auto known =
-        std::find(kJointNames.begin(), kJointNames.end(), plain_name(model.nodes[node].name));
-    if (known == kJointNames.end()) continue;
-    const auto joint = static_cast<std::size_t>(known - kJointNames.begin());
-    hand.rest[joint] = glm::inverse(glm::make_mat4(inverse.data() + k * 16));
-    if (!is_rigid(hand.rest[joint]))
-      reader.complain(
-          fmt::format("the inverse bind matrix of its joint {} is not a rigid transform", *known));
-    ours[k] = static_cast<std::uint8_t>(joint);
+    const auto name = parse_name(model.nodes[static_cast<std::size_t>(node)].name);
+    const auto joint = candidate.ours[k];
+    if (joint == kForeign || joint_of(name.key) != joint || found[joint]) continue;
     found[joint] = true;
+    const auto bind = glm::make_mat4(inverse.data() + k * 16);
+    scales[joint] = scale_of(bind);
+    if (scales[joint] == 0)
+      return reader.complain(fmt::format(
+          "the inverse bind matrix of its joint {} is not a rigid transform; apply the scales of "
+          "armature and mesh in the program that made them",
+          kJointNames[joint]));
+    rest[joint] = glm::inverse(bind);
+    if (joint == 1) candidate.scale = static_cast<float>(scale_of_node(model, node)) * scales[1];
   }
   std::string missing;
   for (int j = 0; j < kJoints; ++j)
     if (!found[j] && !may_be_missing(j))
       missing += fmt::format("{}{}", missing.empty() ? "" : ", ", kJointNames[j]);
-  if (!missing.empty()) reader.complain(fmt::format("its skin lacks the joints {}", missing));
+  if (!missing.empty())
+    return reader.complain(
+        fmt::format("its skin lacks the joints {}; it has {}. Name them as WebXR does: "
+                    "'index-finger-tip', also with 'left-' before or '.L' behind",
+                    missing, names_of(model, skin)));
+  for (int j = 0; j < kJoints; ++j) {
+    if (!found[j]) continue;
+    if (!(std::abs(scales[j] / scales[1] - 1) < 1e-2f))
+      return reader.complain(
+          fmt::format("the inverse bind matrix of its joint {} is not a rigid transform: it scales "
+                      "otherwise than that of the wrist",
+                      kJointNames[j]));
+    for (int axis = 0; axis < 3; ++axis) rest[j][axis] *= scales[j];
+    rest[j][3] = glm::vec4(candidate.scale * glm::vec3(rest[j][3]), 1);
+  }
+}
+
+/// Joints that the model lacks get the frames of their parents.
+void fill_missing_joints(Candidate& candidate) {
   for (int k = 1; k <= kJoints; ++k) {
     const int j = k % kJoints;  // the wrist first, the palm last: parents come before children
-    if (!found[j] && kJointParent[j] >= 0) hand.rest[j] = hand.rest[kJointParent[j]];
+    if (!candidate.found[j] && kJointParent[j] >= 0)
+      candidate.hand.rest[j] = candidate.hand.rest[kJointParent[j]];
   }
-  return ours;
 }
 
 int attribute(const tinygltf::Primitive& primitive, const char* name) {
@@ -193,8 +326,10 @@ int attribute(const tinygltf::Primitive& primitive, const char* name) {
   return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive,
-                  const std::vector<std::uint8_t>& ours, HandMesh& hand) {
+void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive, Candidate& candidate) {
+  const auto& ours = candidate.ours;
+  auto& hand = candidate.hand;
+
   const auto joints =
       reader.read<std::uint32_t>(attribute(primitive, "JOINTS_0"), 4, "joint indices");
   const auto weights = reader.read<float>(attribute(primitive, "WEIGHTS_0"), 4, "weights");
@@ -204,15 +339,20 @@ void read_weights(ArrayReader& reader, const tinygltf::Primitive& primitive,
   for (std::size_t v = 0; v < joints.size(); v += 4) {
     std::array<std::uint8_t, 4> joint{};
     std::array<float, 4> weight{};
-    float sum = 0;
+    float sum = 0, alien = 0;
     for (int k = 0; k < 4; ++k) {
       if (!(weights[v + k] > 0)) continue;
       if (joints[v + k] >= ours.size())
         return reader.complain("it binds a vertex to a joint that its skin does not have");
+      if (ours[joints[v + k]] == kForeign) {
+        alien += weights[v + k];
+        continue;
+      }
       joint[k] = ours[joints[v + k]];
       sum += weight[k] = weights[v + k];
     }
-    loose += sum <= 0;
+    if (alien > sum) candidate.alien.push_back(static_cast<std::uint32_t>(hand.weights.size()));
+    loose += sum + alien <= 0;
     if (sum <= 0) joint = {1, 0, 0, 0}, weight = {sum = 1, 0, 0, 0};
     for (float& w : weight) w /= sum;
     hand.joints.push_back(joint);
@@ -245,7 +385,8 @@ void read_triangles(ArrayReader& reader, const tinygltf::Primitive& primitive, s
 }
 
 void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive,
-                    const std::vector<std::uint8_t>& ours, HandMesh& hand) {
+                    Candidate& candidate) {
+  auto& hand = candidate.hand;
   const std::size_t first = hand.vertex_count();
   const auto positions = reader.read<float>(attribute(primitive, "POSITION"), 3, "positions");
   const std::size_t count = positions.size() / 3;
@@ -256,12 +397,13 @@ void read_primitive(ArrayReader& reader, const tinygltf::Primitive& primitive,
     normals = reader.read<float>(attribute(primitive, "NORMAL"), 3, "normals");
   if (attribute(primitive, "TEXCOORD_0") >= 0)
     uv = reader.read<float>(attribute(primitive, "TEXCOORD_0"), 2, "texture coordinates");
-  read_weights(reader, primitive, ours, hand);
+  read_weights(reader, primitive, candidate);
   if (reader.trouble()) return;
   if (normals.size() != count * 3 || uv.size() != count * 2 || hand.weights.size() != first + count)
     return reader.complain("its vertex attributes differ in number");
   for (std::size_t v = 0; v < count; ++v) {
-    hand.positions.emplace_back(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]);
+    hand.positions.push_back(
+        candidate.scale * glm::vec3(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]));
     hand.normals.emplace_back(normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]);
     hand.uv.emplace_back(uv[2 * v], uv[2 * v + 1]);
   }
@@ -281,12 +423,103 @@ void fill_missing_normals(HandMesh& hand) {
       hand.normals[v] = sum[v] / std::max(glm::length(sum[v]), 1e-20f);
 }
 
-const tinygltf::Node* first_skinned_node(const tinygltf::Model& model) {
-  for (const tinygltf::Node& node : model.nodes)
-    if (node.skin >= 0 && node.skin < std::ssize(model.skins) && node.mesh >= 0 &&
-        node.mesh < std::ssize(model.meshes))
-      return &node;
-  return nullptr;
+/// Takes the vertices and triangles out that belong to the other hand.
+void drop_alien_vertices(Candidate& candidate) {
+  auto& [hand, found, ours, alien, scale, covered] = candidate;
+  if (alien.empty()) return;
+  std::vector<int> place(hand.vertex_count());  // -1: dropped
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (std::ranges::binary_search(alien, static_cast<std::uint32_t>(v))) {
+      place[v] = -1;
+      continue;
+    }
+    hand.positions[kept] = hand.positions[v];
+    hand.normals[kept] = hand.normals[v];
+    hand.uv[kept] = hand.uv[v];
+    hand.joints[kept] = hand.joints[v];
+    hand.weights[kept] = hand.weights[v];
+    place[v] = static_cast<int>(kept++);
+  }
+  hand.positions.resize(kept), hand.normals.resize(kept), hand.uv.resize(kept);
+  hand.joints.resize(kept), hand.weights.resize(kept);
+  std::erase_if(hand.triangles, [&](const auto& triangle) {
+    return std::ranges::any_of(triangle, [&](auto v) { return place[v] < 0; });
+  });
+  for (auto& triangle : hand.triangles)
+    for (auto& v : triangle) v = static_cast<std::uint16_t>(place[v]);
+}
+
+void count_joints(Candidate& candidate) {
+  std::array<bool, kJoints> moves{};
+  for (std::size_t v = 0; v < candidate.hand.vertex_count(); ++v)
+    for (int k = 0; k < 4; ++k)
+      if (candidate.hand.weights[v][k] > 0.4f) moves[candidate.hand.joints[v][k]] = true;
+  candidate.covered = static_cast<std::size_t>(std::ranges::count(moves, true));
+}
+
+std::string_view name_of(Side side) { return side == Side::left ? "left" : "right"; }
+
+/// Reads the mesh of a node as the hand of a side. The error is the end of a sentence.
+tl::expected<Candidate, std::string> read_candidate(const tinygltf::Model& model,
+                                                    const tinygltf::Node& node, Side side) {
+  Candidate candidate;
+  candidate.hand.side = side;
+  ArrayReader reader(model);
+  read_skeleton(reader, model, model.skins[static_cast<std::size_t>(node.skin)], candidate);
+  for (const tinygltf::Primitive& primitive :
+       model.meshes[static_cast<std::size_t>(node.mesh)].primitives)
+    if (!reader.trouble() && (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode < 0))
+      read_primitive(reader, primitive, candidate);
+  if (reader.trouble()) return tl::make_unexpected(*reader.trouble());
+  fill_missing_joints(candidate);
+  drop_alien_vertices(candidate);
+  auto& hand = candidate.hand;
+  if (hand.triangles.empty()) return tl::make_unexpected("its skinned mesh has no triangles");
+  if (auto fault = fault_of_mesh(hand); !fault.empty()) return tl::make_unexpected(fault);
+  if (!has_palm(hand.rest)) return tl::make_unexpected("its wrist and knuckles lie in a line");
+  if (const auto is = side_of_joints(hand.rest); is && *is != side)
+    return tl::make_unexpected(
+        fmt::format("it is a {0} hand, by its thumb; name it as hand.{0}, and as hand.{1} a model "
+                    "of a {1} hand",
+                    name_of(*is), name_of(side)));
+  count_joints(candidate);
+  return candidate;
+}
+
+/// The mesh that is the hand: of those that can be one, that which most joints move. A cuff or a
+/// ring may be skinned too, and a file may have both hands.
+tl::expected<Candidate, std::string> find_hand(const tinygltf::Model& model, Side side) {
+  constexpr int kMostMeshes = 32;  // so that a malicious file is read soon
+  int meshes = 0;
+  tl::expected<Candidate, std::string> best = tl::make_unexpected("it contains no skinned mesh");
+  for (const tinygltf::Node& node : model.nodes) {
+    if (node.skin < 0 || node.skin >= std::ssize(model.skins) || node.mesh < 0 ||
+        node.mesh >= std::ssize(model.meshes) || meshes == kMostMeshes)
+      continue;
+    auto candidate = read_candidate(model, node, side);
+    const bool is_first = meshes++ == 0;
+    const bool is_better =
+        candidate && (!best || candidate->covered > best->covered ||
+                      (candidate->covered == best->covered &&
+                       candidate->hand.vertex_count() > best->hand.vertex_count()));
+    if (is_first || is_better) best = std::move(candidate);
+  }
+  return best;
+}
+
+/// Why an extension that a file requires cannot be read; empty if it does not change the mesh.
+std::string fault_of_extension(const std::string& name) {
+  if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression")
+    return "export it without compression";
+  if (name == "KHR_texture_transform")
+    return "export it with the transform applied to its texture coordinates";
+  constexpr std::array<std::string_view, 4> kHarmless{"KHR_mesh_quantization", "KHR_texture_basisu",
+                                                      "EXT_texture_webp", "EXT_texture_avif"};
+  if (name.starts_with("KHR_materials_") || name.starts_with("KHR_lights_") ||
+      std::ranges::find(kHarmless, name) != kHarmless.end())
+    return {};
+  return "export it without this extension";
 }
 
 }  // namespace
@@ -297,20 +530,22 @@ Result<HandMesh> load_hand(const std::filesystem::path& file, Side side) {
   };
   const auto model = read_gltf(file);
   if (!model) return tl::make_unexpected(model.error());
-  const tinygltf::Node* node = first_skinned_node(*model);
-  if (!node) return refuse("it contains no skinned mesh");
-
-  HandMesh hand;
-  hand.side = side;
-  ArrayReader reader(*model);
-  const auto ours = read_skeleton(reader, *model, model->skins[node->skin], hand);
-  for (const tinygltf::Primitive& primitive : model->meshes[node->mesh].primitives)
-    if (!reader.trouble() && (primitive.mode == TINYGLTF_MODE_TRIANGLES || primitive.mode < 0))
-      read_primitive(reader, primitive, ours, hand);
-  if (reader.trouble()) return refuse(*reader.trouble());
-  if (hand.triangles.empty()) return refuse("its skinned mesh has no triangles");
-  if (const auto fault = fault_of_mesh(hand); !fault.empty()) return refuse(fault);
+  for (const auto& extension : model->extensionsRequired)
+    if (const auto remedy = fault_of_extension(extension); !remedy.empty())
+      return refuse(
+          fmt::format("it requires the glTF extension '{}', which handcast does not read; {}",
+                      extension.substr(0, 60), remedy));
+  auto candidate = find_hand(*model, side);
+  if (!candidate) return refuse(candidate.error());
+  auto hand = std::move(candidate->hand);
   fill_missing_normals(hand);
+  if (const auto done = settle_axes(hand, candidate->found); !done.empty()) {
+    candidate->hand.rest = hand.rest;
+    fill_missing_joints(*candidate);
+    hand.rest = candidate->hand.rest;
+    log::info("hand '{}': {}", file.string(), done);
+  }
+  if (const auto fault = fault_when_bent(hand); !fault.empty()) return refuse(fault);
   number_charts(hand);
   return hand;
 }

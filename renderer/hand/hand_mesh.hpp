@@ -42,11 +42,14 @@ struct HandMesh {
   std::size_t vertex_count() const { return positions.size(); }
 };
 
-/// Reads the first skinned mesh of a glTF or GLB file. Its joints must have the names of WebXR,
-/// with or without the prefix of a side. The palm, the tips and the metacarpals of the fingers may
-/// be missing: they get the frame of their parent. Errors (bad_config): no such file, not glTF, no
-/// skinned mesh, other joints missing (the message names them), more than 65,535 vertices, an index
-/// out of range, a number that is not finite, a mesh that cannot be a hand (fault_of_mesh()).
+/// Reads a hand from a glTF or GLB file: of its skinned meshes with the joints of this side that
+/// which most of them move. The joints have the names of WebXR, with or without a side before or
+/// behind; the palm, the tips and the metacarpals of the fingers may be missing: they get the frame
+/// of their parent. The axes of the joints are settled (settle_axes()). Errors (bad_config): no
+/// such file, not glTF, no skinned mesh, a required extension that is not read, other joints
+/// missing (the message names them), a hand of the other side, more than 65,535 vertices, an index
+/// out of range, a number that is not finite, a mesh that cannot be a hand (fault_of_mesh(),
+/// fault_when_bent()).
 Result<HandMesh> load_hand(const std::filesystem::path& file, Side side);
 
 /// The hand that is made at build time: in the folder named by the environment variable

@@ -25,7 +25,7 @@ Result<std::unique_ptr<FilmReader>> open_film(const fs::path& file) {
   std::unique_ptr<FilmReader> film(open(file.c_str()));
   if (!film)
     return fail(Errc::bad_config,
-                fmt::format("'{}' is no film that OpenCV can read", file.string()));
+                fmt::format("'{}' is no film that FFmpeg can read", file.string()));
   return film;
 }
 

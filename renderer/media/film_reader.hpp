@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "ipc/base/result.hpp"
 
@@ -13,20 +14,20 @@ class FilmReader {
  public:
   virtual ~FilmReader() = default;
 
-  /// What the film says about itself.
+  /// Size of its frames in pixels, turned as the film asks for.
   /// @{
   virtual int width_px() const = 0;
   virtual int height_px() const = 0;
-  virtual std::int64_t frames() const = 0;  ///< number of frames; 0: unknown
-  virtual double rate_hz() const = 0;       ///< frames per second; may be any number
   /// @}
-  /// Reads frame `index` as grey values, width_px() * height_px() of them. Returns false if it
-  /// cannot be read.
+  /// The times of all frames since the first, ascending; empty if the film does not say them.
+  virtual const std::vector<std::int64_t>& times_ns() const = 0;
+  /// Reads frame `index` as grey values, width_px() * height_px() of them: its luma, over black if
+  /// it is transparent. Returns false if it cannot be read.
   virtual bool read(std::int64_t index, std::uint8_t* grey) = 0;
 };
 
-/// Opens a film with OpenCV's videoio, in a library of its own (libhandcast-film.so): videoio loads
-/// a hundred other libraries, which would delay every start of a camera service by about 0.1 s.
+/// Opens a film with FFmpeg, in a library of its own (libhandcast-film.so): it loads many other
+/// libraries, which would delay every start of a camera service. Reads the whole file once.
 /// Errors (bad_config): no such file, not a film, this installation has no library for films.
 Result<std::unique_ptr<FilmReader>> open_film(const std::filesystem::path& file);
 

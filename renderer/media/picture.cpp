@@ -5,56 +5,108 @@
 #include <spng.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "ipc/base/input_file.hpp"
-#include "ipc/base/write_whole.hpp"
-#include "renderer/base/srgb.hpp"
+#include "ipc/base/log.hpp"
+#include "renderer/media/colour_profile.hpp"
 #include "renderer/media/jpeg.hpp"
+#include "renderer/media/orientation.hpp"
 
 namespace handcast::renderer {
 namespace {
 
-constexpr std::uint32_t kOpaque = 0xff000000u;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 /// Memory for the chunks of a file beside its pixels, which may be packed to a thousandth.
 constexpr std::size_t kMostChunks = 16 << 20;
-constexpr double kScreenGamma = 2.2;
 
-/// The bytes without the chunks of text, which the decoder would inflate: thousands of them can
-/// take minutes. Bytes that are no chunks are left to the decoder.
-std::string without_texts(std::string_view bytes) {
-  constexpr std::size_t kFrame = 12;  // length, type and checksum of a chunk
-  std::string kept(bytes.substr(0, kPngSignature.size()));
-  bytes.remove_prefix(kept.size());
-  while (bytes.size() >= kFrame) {
-    std::size_t length = kFrame;
-    for (int i = 0; i < 4; ++i)
-      length += std::size_t{static_cast<std::uint8_t>(bytes[i])} << (24 - 8 * i);
-    const auto type = bytes.substr(4, 4), chunk = bytes.substr(0, length);
-    if (type != "tEXt" && type != "zTXt" && type != "iTXt") kept += chunk;
-    bytes.remove_prefix(chunk.size());
+std::size_t number_at(std::string_view bytes, std::size_t at, int width, bool big_endian = true) {
+  std::size_t value = 0;
+  for (int i = 0; i < width; ++i) {
+    const auto k = at + static_cast<std::size_t>(big_endian ? i : width - 1 - i);
+    value = value << 8 | (k < bytes.size() ? static_cast<std::uint8_t>(bytes[k]) : 0u);
   }
-  return kept += bytes;
+  return value;
+}
+
+/// A PNG file without the chunks of text, which the decoder would inflate: thousands of them can
+/// take minutes. Bytes that are no chunks are left to the decoder.
+struct PngChunks {
+  std::string kept;
+  std::string exif, cicp;  ///< the contents of eXIf and cICP
+
+  explicit PngChunks(std::string_view bytes) : kept(bytes.substr(0, kPngSignature.size())) {
+    constexpr std::size_t kFrame = 12;  // length, type and checksum of a chunk
+    bytes.remove_prefix(kept.size());
+    while (bytes.size() >= kFrame) {
+      const auto length = number_at(bytes, 0, 4);
+      const auto type = bytes.substr(4, 4), chunk = bytes.substr(0, kFrame + length);
+      if (type != "tEXt" && type != "zTXt" && type != "iTXt") kept += chunk;
+      if (type == "eXIf") exif = bytes.substr(8, length);
+      if (type == "cICP") cicp = bytes.substr(8, length);
+      bytes.remove_prefix(chunk.size());
+    }
+    kept += bytes;
+  }
+};
+
+/// The contents of the segments of a JPEG file that have a marker and begin with `name`.
+std::vector<std::string_view> segments_of(std::string_view jpeg, std::uint8_t marker,
+                                          std::string_view name) {
+  constexpr std::uint8_t kScan = 0xda;
+  std::vector<std::string_view> found;
+  for (std::size_t at = 2; at + 4 <= jpeg.size() && number_at(jpeg, at, 1) == 0xff;) {
+    const auto type = number_at(jpeg, at + 1, 1), length = number_at(jpeg, at + 2, 2);
+    if (type == kScan || length < 2) break;
+    const auto content = jpeg.substr(at + 4, length - 2);
+    if (type == marker && content.starts_with(name)) found.push_back(content.substr(name.size()));
+    at += 2 + length;
+  }
+  return found;
+}
+
+/// The ICC profile of a JPEG file, which its segments hold in numbered parts (ICC.1:2010, B.4).
+std::string icc_of_jpeg(std::string_view jpeg) {
+  std::map<char, std::string_view> parts;
+  for (const auto part : segments_of(jpeg, 0xe2, std::string_view("ICC_PROFILE\0", 12)))
+    if (part.size() > 2) parts[part[0]] = part.substr(2);
+  std::string icc;
+  for (const auto& [number, part] : parts) icc += part;
+  return icc;
+}
+
+/// The orientation 1..8 in an Exif block, a TIFF header with fields; 1 if it says none.
+int orientation_of(std::string_view exif) {
+  constexpr std::size_t kOrientation = 0x0112, kField = 12;
+  const bool big = exif.starts_with("MM");
+  const auto fields = number_at(exif, 4, 4, big);
+  for (std::size_t i = 0; i < number_at(exif, fields, 2, big); ++i)
+    if (const auto field = fields + 2 + kField * i; number_at(exif, field, 2, big) == kOrientation)
+      return std::clamp(static_cast<int>(number_at(exif, field + 8, 2, big)), 1, 8);
+  return 1;
 }
 
 /// A PNG file whose header has been read.
 struct PngFile {
-  std::unique_ptr<const std::string> bytes;  ///< which the decoder reads
+  std::unique_ptr<const PngChunks> chunks;  ///< which the decoder reads
   std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)> png;
   spng_ihdr header{};
-  double gamma = 0;  ///< 0 if the values are those of sRGB
 
+  bool is_grey() const {
+    return header.color_type == SPNG_COLOR_TYPE_GRAYSCALE ||
+           header.color_type == SPNG_COLOR_TYPE_GRAYSCALE_ALPHA;
+  }
   bool is_plain_grey() const {
     spng_trns transparency;
-    return header.color_type == SPNG_COLOR_TYPE_GRAYSCALE && header.bit_depth <= 8 && gamma == 0 &&
+    return header.color_type == SPNG_COLOR_TYPE_GRAYSCALE && header.bit_depth <= 8 &&
            spng_get_trns(png.get(), &transparency) != 0;
   }
 };
@@ -63,28 +115,56 @@ tl::unexpected<Error> broken(const std::filesystem::path& file) {
   return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture.", file.string()));
 }
 
-double gamma_of(spng_ctx* png, int bit_depth) {
+void say_unknown_colours(const std::filesystem::path& file, std::string_view what,
+                         std::string_view why) {
+  log::warning(
+      "the colours of '{}' are taken for sRGB: its {} cannot be read ({}); convert the "
+      "picture to sRGB",
+      file.string(), what, why);
+}
+
+/// The colours of a picture with an ICC profile; empty if they are those of sRGB.
+std::optional<ColourProfile> profile_of(std::string_view icc, bool is_grey,
+                                        const std::filesystem::path& file) {
+  auto profile = read_icc_profile(icc, is_grey);
+  if (profile && !is_srgb(*profile)) return std::move(*profile);
+  if (!profile)
+    say_unknown_colours(file, fmt::format("colour profile '{}'", name_of_icc_profile(icc)),
+                        profile.error().what);
+  return std::nullopt;
+}
+
+/// The same of a PNG file: by what the standard gives precedence (PNG, third edition, 4.3).
+std::optional<ColourProfile> profile_of(const PngFile& opened, const std::filesystem::path& file) {
+  constexpr double kScreenGamma = 2.2, kSame = 0.05;
+  constexpr std::string_view kSrgb("\1\x0d\0\1", 4);  // ITU-T H.273: primaries, curve, RGB, full
+  if (const auto& cicp = opened.chunks->cicp; !cicp.empty()) {
+    if (cicp != kSrgb) say_unknown_colours(file, "chunk cICP", "it is not sRGB");
+    return std::nullopt;
+  }
+  auto* png = opened.png.get();
+  spng_iccp icc{};
   std::uint8_t intent = 0;
   double gamma = 0;
-  if (spng_get_srgb(png, &intent) == 0) return 0;
-  if (spng_get_gama(png, &gamma) != 0) return bit_depth == 16 ? 1 : 0;
-  constexpr double kSame = 0.05;
-  return std::abs(gamma * kScreenGamma - 1) < kSame ? 0 : gamma;
+  if (spng_get_iccp(png, &icc) == 0)
+    return profile_of({icc.profile, icc.profile_len}, opened.is_grey(), file);
+  if (spng_get_srgb(png, &intent) == 0 || spng_get_gama(png, &gamma) != 0 || gamma <= 0 ||
+      std::abs(gamma * kScreenGamma - 1) < kSame)
+    return std::nullopt;
+  return profile_of_gamma(gamma);
 }
 
 Result<PngFile> open_png(std::string_view bytes, const std::filesystem::path& file) {
-  PngFile opened{std::make_unique<const std::string>(without_texts(bytes)),
-                 {spng_ctx_new(0), spng_ctx_free}};
+  PngFile opened{std::make_unique<const PngChunks>(bytes), {spng_ctx_new(0), spng_ctx_free}};
   auto* png = opened.png.get();
   spng_set_chunk_limits(png, kMostPicture, kMostChunks);
-  spng_set_png_buffer(png, opened.bytes->data(), opened.bytes->size());
+  spng_set_png_buffer(png, opened.chunks->kept.data(), opened.chunks->kept.size());
   if (spng_get_ihdr(png, &opened.header) != 0) return broken(file);
   const auto width = opened.header.width, height = opened.header.height;
   if (std::max(width, height) > kLargestSide)
     return fail(Errc::bad_config,
                 fmt::format("The picture '{}' is {}x{} px; at most {} px per side are allowed.",
                             file.string(), width, height, kLargestSide));
-  opened.gamma = gamma_of(png, opened.header.bit_depth);
   return opened;
 }
 
@@ -98,73 +178,86 @@ Result<Image<Pixel>> decode_as(spng_format format, const PngFile& opened,
   return image;
 }
 
-/// The levels on the screen of all values of 16 bits.
-std::vector<std::uint8_t> levels_of(double gamma) {
-  std::vector<std::uint8_t> levels(1 << 16);
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const double value = static_cast<double>(i) / 65535;
-    const double level = gamma == 1 ? srgb_level(value) : std::pow(value, 1 / gamma / kScreenGamma);
-    levels[i] = static_cast<std::uint8_t>(std::lround(255 * level));
-  }
-  return levels;
+Result<Texture> read_png(std::string_view bytes, const std::filesystem::path& file) {
+  const auto opened = open_png(bytes, file);
+  if (!opened) return tl::make_unexpected(opened.error());
+  const int orientation = orientation_of(opened->chunks->exif);
+  if (const auto profile = profile_of(*opened, file))
+    return decode_as<WidePixel>(SPNG_FMT_RGBA16, *opened, file).map([&](const auto& picture) {
+      return turned(srgb_over_black(picture, *profile), orientation);
+    });
+  return decode_as<std::uint32_t>(SPNG_FMT_RGBA8, *opened, file).map([&](Texture&& picture) {
+    put_over_black(picture);
+    return turned(std::move(picture), orientation);
+  });
 }
 
-Result<Texture> decode_colours(const PngFile& opened, const std::filesystem::path& file) {
-  if (opened.gamma == 0) return decode_as<std::uint32_t>(SPNG_FMT_RGBA8, opened, file);
-  const auto wide = decode_as<std::array<std::uint16_t, 4>>(SPNG_FMT_RGBA16, opened, file);
+Image<WidePixel> widened(const Texture& picture) {
+  Image<WidePixel> wide(picture.width(), picture.height());
+  std::ranges::transform(picture.pixels(), wide.pixels().begin(), [](std::uint32_t rgba) {
+    const auto value = [&](int k) {
+      return static_cast<std::uint16_t>(257 * (rgba >> 8 * k & 255));
+    };
+    return WidePixel{value(0), value(1), value(2), value(3)};
+  });
+  return wide;
+}
+
+int orientation_of_jpeg(std::string_view jpeg) {
+  const auto blocks = segments_of(jpeg, 0xe1, std::string_view("Exif\0\0", 6));
+  return blocks.empty() ? 1 : orientation_of(blocks.front());
+}
+
+Result<Texture> read_jpeg(std::string_view bytes, const std::filesystem::path& file) {
+  auto picture = decode_jpeg(bytes);
+  if (!picture)
+    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), picture.error().what));
+  const auto is_grey = [](std::uint32_t rgba) {
+    return (rgba & 255) == (rgba >> 8 & 255) && (rgba & 255) == (rgba >> 16 & 255);
+  };
+  if (const auto icc = icc_of_jpeg(bytes); !icc.empty())
+    if (const auto profile = profile_of(icc, std::ranges::all_of(picture->pixels(), is_grey), file))
+      picture = srgb_over_black(widened(*picture), *profile);
+  return turned(std::move(*picture), orientation_of_jpeg(bytes));
+}
+
+std::uint32_t luma_of(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
+  return (299 * red + 587 * green + 114 * blue + 500) / 1000;  // ITU-R BT.601
+}
+
+Result<GreyPicture> read_grey_jpeg(std::string_view bytes, const std::filesystem::path& file) {
+  const auto picture = decode_jpeg(bytes);
+  if (!picture)
+    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), picture.error().what));
+  Image<std::uint8_t> grey(picture->width(), picture->height());
+  std::ranges::transform(picture->pixels(), grey.pixels().begin(), [](std::uint32_t rgba) {
+    return static_cast<std::uint8_t>(luma_of(rgba & 255, rgba >> 8 & 255, rgba >> 16 & 255));
+  });
+  return GreyPicture{turned(std::move(grey), orientation_of_jpeg(bytes)), 0};
+}
+
+Result<GreyPicture> read_grey_png(std::string_view bytes, const std::filesystem::path& file,
+                                  int used_bits) {
+  const auto opened = open_png(bytes, file);
+  if (!opened) return tl::make_unexpected(opened.error());
+  const int orientation = orientation_of(opened->chunks->exif);
+  if (opened->is_plain_grey())
+    return decode_as<std::uint8_t>(SPNG_FMT_G8, *opened, file).map([&](Image<std::uint8_t>&& grey) {
+      return GreyPicture{turned(std::move(grey), orientation), 0};
+    });
+  const auto wide = decode_as<WidePixel>(SPNG_FMT_RGBA16, *opened, file);
   if (!wide) return tl::make_unexpected(wide.error());
-  const auto levels = levels_of(opened.gamma);
-  Texture picture(wide->width(), wide->height());
-  std::ranges::transform(wide->pixels(), picture.pixels().begin(), [&](const auto& rgba) {
-    return static_cast<std::uint32_t>(levels[rgba[0]] | levels[rgba[1]] << 8 |
-                                      levels[rgba[2]] << 16) |
-           static_cast<std::uint32_t>(rgba[3] >> 8) << 24;
+  const bool has_16_bits = opened->header.bit_depth == 16;
+  Image<std::uint8_t> grey(wide->width(), wide->height());
+  std::uint32_t largest = 0;
+  std::ranges::transform(wide->pixels(), grey.pixels().begin(), [&](const WidePixel& pixel) {
+    const auto luma = luma_of(pixel[0], pixel[1], pixel[2]);
+    const auto value = (luma * pixel[3] + 32'767) / 65'535;
+    largest = std::max(largest, value);
+    return static_cast<std::uint8_t>(
+        std::min(value >> ((has_16_bits ? used_bits : 16) - 8), std::uint32_t{255}));
   });
-  return picture;
-}
-
-Image<std::uint8_t> luminance_of(const Texture& picture) {
-  std::array<double, 256> light;
-  for (std::size_t i = 0; i < light.size(); ++i)
-    light[i] = srgb_light(static_cast<double>(i) / 255);
-  Image<std::uint8_t> grey(picture.width(), picture.height());
-  std::ranges::transform(picture.pixels(), grey.pixels().begin(), [&](std::uint32_t rgba) {
-    const auto part = [&](int shift) { return rgba >> shift & 255; };
-    const double luminance =  // ITU-R BT.709
-        0.2126 * light[part(0)] + 0.7152 * light[part(8)] + 0.0722 * light[part(16)];
-    return static_cast<std::uint8_t>(std::lround(255 * srgb_level(luminance * part(24) / 255)));
-  });
-  return grey;
-}
-
-/// `pixels`: rows without padding.
-Result<void> write_png(const std::filesystem::path& file, int width_px, int height_px,
-                       spng_color_type colours, const std::vector<std::uint8_t>& pixels) {
-  constexpr int kRunLengths = 3;  // Z_RLE: for images, the fastest, and small
-  const std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)> png(spng_ctx_new(SPNG_CTX_ENCODER),
-                                                                spng_ctx_free);
-  for (const auto& [option, value] : {std::pair{SPNG_ENCODE_TO_BUFFER, 1},
-                                      {SPNG_IMG_COMPRESSION_LEVEL, 1},
-                                      {SPNG_IMG_COMPRESSION_STRATEGY, kRunLengths},
-                                      {SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_UP}})
-    spng_set_option(png.get(), option, value);
-  spng_ihdr header{static_cast<std::uint32_t>(width_px),
-                   static_cast<std::uint32_t>(height_px),
-                   8,
-                   static_cast<std::uint8_t>(colours),
-                   0,
-                   0,
-                   0};
-  spng_set_ihdr(png.get(), &header);
-  int failed = spng_encode_image(png.get(), pixels.data(), pixels.size(), SPNG_FMT_PNG,
-                                 SPNG_ENCODE_FINALIZE);
-  std::size_t size = 0;
-  const std::unique_ptr<void, decltype(&std::free)> bytes(
-      failed ? nullptr : spng_get_png_buffer(png.get(), &size, &failed), std::free);
-  if (failed)
-    return fail(Errc::unavailable, fmt::format("The picture '{}' cannot be made: {}.",
-                                               file.string(), spng_strerror(failed)));
-  return write_whole(file, {static_cast<const char*>(bytes.get()), size}, Durable::no);
+  return GreyPicture{turned(std::move(grey), orientation), has_16_bits ? largest : 0};
 }
 
 }  // namespace
@@ -172,43 +265,20 @@ Result<void> write_png(const std::filesystem::path& file, int width_px, int heig
 Result<Texture> read_picture(const std::filesystem::path& file) {
   const auto bytes = read_input(file, kMostPicture);
   if (!bytes) return fail_in("picture", bytes.error());
-  if (!bytes->starts_with(kPngSignature)) {
-    auto texture = decode_jpeg(*bytes);
-    if (texture) return texture;
-    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), texture.error().what));
-  }
-  const auto opened = open_png(*bytes, file);
-  if (!opened) return tl::make_unexpected(opened.error());
-  auto picture = decode_colours(*opened, file);
-  if (picture)
-    for (auto& pixel : picture->pixels()) pixel |= kOpaque;
-  return picture;
+  return bytes->starts_with(kPngSignature) ? read_png(*bytes, file) : read_jpeg(*bytes, file);
 }
 
-Result<Image<std::uint8_t>> read_grey_png(const std::filesystem::path& file) {
+Result<GreyPicture> read_camera_picture(const std::filesystem::path& file, int used_bits) {
   const auto bytes = read_input(file, kMostPicture);
   if (!bytes) return fail_in("picture", bytes.error());
-  const auto opened = open_png(*bytes, file);
-  if (!opened) return tl::make_unexpected(opened.error());
-  if (opened->is_plain_grey()) return decode_as<std::uint8_t>(SPNG_FMT_G8, *opened, file);
-  return decode_colours(*opened, file).map(luminance_of);
+  return bytes->starts_with(kPngSignature) ? read_grey_png(*bytes, file, used_bits)
+                                           : read_grey_jpeg(*bytes, file);
 }
 
-Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture) {
-  std::vector<std::uint8_t> rgb;
-  rgb.reserve(static_cast<std::size_t>(picture.width) * picture.height * 3);
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x)
-      for (const int shift : {0, 8, 16})
-        rgb.push_back(static_cast<std::uint8_t>(picture.at(x, y) >> shift));
-  return write_png(file, picture.width, picture.height, SPNG_COLOR_TYPE_TRUECOLOR, rgb);
-}
-
-Result<void> write_png(const std::filesystem::path& file, GreyView grey) {
-  std::vector<std::uint8_t> rows;
-  for (int y = 0; y < grey.height; ++y)
-    rows.insert(rows.end(), grey.row(y), grey.row(y) + grey.width);
-  return write_png(file, grey.width, grey.height, SPNG_COLOR_TYPE_GRAYSCALE, rows);
+int used_bits_of(std::uint32_t largest) {
+  for (const int bits : {8, 10, 12})
+    if (largest > 0 && largest < 1u << bits) return bits;
+  return 16;
 }
 
 }  // namespace handcast::renderer

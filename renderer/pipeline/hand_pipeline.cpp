@@ -54,10 +54,15 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
                                         const calib::Calibration& calibration,
                                         LandmarkOracle oracle) {
   const bool is_left = side == Side::left;
-  auto mesh = load_hand_or_default(is_left ? hand.left : hand.right, side);
+  const auto& model = is_left ? hand.left : hand.right;
+  auto mesh = load_hand_or_default(model, side);
   if (!mesh) return tl::make_unexpected(mesh.error());
-  auto texture = load_content(is_left ? content.left : content.right, *mesh);
+  const auto& what = is_left ? content.left : content.right;
+  auto texture = load_content(what, *mesh);
   if (!texture) return tl::make_unexpected(texture.error());
+  // Models of other people have layouts, and so proportions, of their own.
+  if (const auto note = note_on_proportions(what, *texture); model.empty() && !note.empty())
+    log::warning("{}", note);
   if (mesh->vertex_count() > msg::kMaxVertices)
     log::warning("the hand has {} vertices: observers receive the first {} only",
                  mesh->vertex_count(), msg::kMaxVertices);

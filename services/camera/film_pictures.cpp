@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -12,8 +11,6 @@ namespace handcast::camera {
 namespace {
 
 using renderer::FilmReader;
-
-constexpr double kFastest_hz = 100'000;
 
 class FilmPictures final : public PictureSource {
  public:
@@ -38,10 +35,9 @@ Result<void> check(const std::filesystem::path& file, const FilmReader& film, co
                                               "camera of {} x {} px",
                                               file.string(), film.width_px(), film.height_px(),
                                               as.width_px, as.height_px));
-  if (film.frames() < 1 || film.frames() > 20'000'000)
+  if (film.times_ns().empty())
     return fail(Errc::bad_config,
-                fmt::format("'{}' does not say how many frames it has; convert it "
-                            "to AVI or MP4",
+                fmt::format("'{}' does not say the times of its frames; convert it to AVI or MP4",
                             file.string()));
   return {};
 }
@@ -52,15 +48,9 @@ Result<PlayedPictures> open_film_pictures(const std::filesystem::path& file, con
   auto film = renderer::open_film(file);
   if (!film) return tl::make_unexpected(film.error());
   if (auto fine = check(file, **film, as); !fine) return tl::make_unexpected(fine.error());
-  const double said_hz = (*film)->rate_hz();
-  const bool says_rate = std::isfinite(said_hz) && said_hz > 0 && said_hz < kFastest_hz;
-  const double rate_hz = says_rate ? said_hz : as.rate_hz;
-  const auto count = static_cast<std::size_t>((*film)->frames());
-  std::vector<std::int64_t> times_ns;
-  for (std::size_t i = 0; i < count; ++i)
-    times_ns.push_back(seconds_to_ns(static_cast<double>(i) / rate_hz));
-  auto loop =
-      timing::Loop::make(std::move(times_ns), {}, as.epoch_ns, as.loop, seconds_to_ns(1 / rate_hz));
+  const auto count = (*film)->times_ns().size();
+  auto loop = timing::Loop::make((*film)->times_ns(), {}, as.epoch_ns, as.loop,
+                                 seconds_to_ns(1 / as.rate_hz));
   if (!loop) return fail_in(file.string(), loop.error());
   return PlayedPictures{std::make_unique<FilmPictures>(std::move(*film), as.exposure_ns),
                         recording::Schedule(std::move(*loop), count)};

@@ -48,13 +48,14 @@ struct PlayedAs {
 Result<PlayedPictures> open_recorded_pictures(const std::filesystem::path& folder,
                                               const PlayedAs& as);
 
-/// The frames of a film, at the rate that it says; if it says none, at that of the settings.
-/// Errors: those of open_film(), bad_config (it has another size, or does not say its length).
+/// The frames of a film, at its own times. Errors: those of open_film(), bad_config (it has another
+/// size, or does not say its times).
 Result<PlayedPictures> open_film_pictures(const std::filesystem::path& file, const PlayedAs& as);
 
-/// The grey PNG images of a folder, or of `camera` in it, in the order of their names, at the times
-/// of camera_timestamps.npy; if there is no such file, at the rate of the settings. They are
-/// decoded here, so they may take at most 1 GiB. Errors: bad_config (the folder is missing or has
+/// The PNG images of a folder, or of `camera` in it, as renderer::read_camera_picture() reads them,
+/// in the order of the numbers in their names, at the times of camera_timestamps.npy; if there is
+/// no such file, at the rate of the settings. They are decoded here, so they may take at most
+/// 1 GiB. Errors: bad_config (the folder is missing or has
 /// no images, a file is not an image or has another size, the images take more than 1 GiB, the
 /// times are wrong or not as many).
 Result<PlayedPictures> open_png_pictures(const std::filesystem::path& folder, const PlayedAs& as);

@@ -151,7 +151,8 @@ std::vector<Image> real_images() {
     for (const auto& entry :
          std::filesystem::directory_iterator(std::filesystem::path(data) / "real", absent))
       if (entry.path().extension() == ".png")
-        if (auto image = renderer::read_grey_png(entry.path())) images.push_back(std::move(*image));
+        if (auto image = renderer::read_camera_picture(entry.path()))
+          images.push_back(std::move(image->grey));
   return images;
 }
 

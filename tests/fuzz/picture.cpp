@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   file.write({data, size});
   if (const auto picture = renderer::read_picture(file.path()))
     fuzz::require(picture->width() > 0 && picture->height() > 0);
-  if (const auto grey = renderer::read_grey_png(file.path()))
-    fuzz::require(grey->width() > 0 && grey->height() > 0);
+  if (const auto camera = renderer::read_camera_picture(file.path()))
+    fuzz::require(camera->grey.width() > 0 && camera->grey.height() > 0);
   return 0;
 }

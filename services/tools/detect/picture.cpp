@@ -11,16 +11,11 @@
 namespace handcast::detect {
 
 Result<renderer::Image<std::uint8_t>> read_grey(const std::filesystem::path& file) {
-  const auto colour = renderer::read_picture(file);
-  if (!colour) return tl::make_unexpected(colour.error());
-  renderer::Image<std::uint8_t> grey(colour->width(), colour->height());
-  for (std::size_t i = 0; i < grey.pixels().size(); ++i) {
-    const std::uint32_t rgba = colour->pixels()[i];
-    const std::uint32_t red = rgba & 255, green = rgba >> 8 & 255, blue = rgba >> 16 & 255;
-    grey.pixels()[i] = static_cast<std::uint8_t>((299 * red + 587 * green + 114 * blue + 500) /
-                                                 1000);  // ITU-R BT.601
-  }
-  return grey;
+  auto picture = renderer::read_camera_picture(file);
+  if (picture && renderer::used_bits_of(picture->largest) < 16)
+    picture = renderer::read_camera_picture(file, renderer::used_bits_of(picture->largest));
+  if (!picture) return tl::make_unexpected(picture.error());
+  return std::move(picture->grey);
 }
 
 Result<landmarks::Points> read_joints(const std::filesystem::path& file, int width_px,

@@ -8,7 +8,7 @@
 
 namespace handcast::detect {
 
-/// A PNG or JPEG picture as grey. Errors: bad_config.
+/// A PNG or JPEG picture as renderer::read_camera_picture() reads it. Errors: bad_config.
 Result<renderer::Image<std::uint8_t>> read_grey(const std::filesystem::path& file);
 
 /// A tracker's joints in a picture, as the 21 landmarks in pixels. The .npy file has the shape

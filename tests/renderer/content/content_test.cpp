@@ -105,7 +105,7 @@ TEST(Content, AMissingFileAndAFileThatIsNoPictureAreToldApart) {
 }
 
 TEST(Content, AMissingGreyPngIsNotReportedAsADamagedOne) {
-  const auto missing = read_grey_png("/nowhere/picture.png");
+  const auto missing = read_camera_picture("/nowhere/picture.png");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, Errc::bad_config);
   EXPECT_THAT(missing.error().what,
@@ -229,6 +229,16 @@ TEST(Content, AJpegForPrintersIsRefusedByItsColours) {
   const auto picture = read_picture(print.path());
   ASSERT_FALSE(picture);
   EXPECT_THAT(picture.error().what, HasSubstr("CMYK"));
+}
+
+TEST(Content, APictureThatIsStretchedIsSaidWithBothSizes) {
+  EXPECT_EQ(note_on_proportions("good.png", Texture(1920, 1200)), "");
+  EXPECT_EQ(note_on_proportions("good.png", Texture(1023, 640)), "");
+  EXPECT_THAT(note_on_proportions("square.png", Texture(1000, 1000)),
+              AllOf(HasSubstr("'square.png' has 1000 x 1000 px, its template 1024 x 640"),
+                    HasSubstr("to 160 % of its width")));
+  EXPECT_THAT(note_on_proportions("wide.png", Texture(3200, 1000)),
+              HasSubstr("to 200 % of its height"));
 }
 
 }  // namespace

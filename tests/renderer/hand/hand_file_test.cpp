@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
 
 #include "services/lab/hand_maker/glb_write.hpp"
@@ -38,7 +39,11 @@ class HandFile : public ::testing::Test {
 
   /// The saved hand with its JSON changed.
   std::filesystem::path changed(const std::function<void(json&)>& change) const {
-    std::ifstream in(saved(), std::ios::binary);
+    return changed_of(saved(), change);
+  }
+  std::filesystem::path changed_of(const std::filesystem::path& file,
+                                   const std::function<void(json&)>& change) const {
+    std::ifstream in(file, std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(in)), {});
     std::uint32_t length;
     std::memcpy(&length, bytes.data() + 12, 4);
@@ -299,6 +304,216 @@ TEST_F(HandFile, MoreVerticesThanIndicesCanNameAreSaid) {
   ASSERT_TRUE(largest) << largest.error().what;
   EXPECT_EQ(largest->vertex_count(), kMost);
   EXPECT_THAT(refusal(grow_to(kMost + 1)), HasSubstr("more than 65535 vertices"));
+}
+
+/// The mean hand with the axes of each joint turned by a turn of its own frame.
+HandMesh with_axes(const std::function<glm::mat3(int)>& turn_of) {
+  HandMesh hand = mean_hand(Side::left);
+  for (int j = 0; j < kJoints; ++j) hand.rest[j] = hand.rest[j] * glm::mat4(turn_of(j));
+  return hand;
+}
+
+float angle_deg(const glm::mat4& a, const glm::mat4& b) {
+  const auto between = glm::transpose(glm::mat3(a)) * glm::mat3(b);
+  return glm::degrees(
+      std::acos(std::clamp((between[0][0] + between[1][1] + between[2][2] - 1) / 2, -1.f, 1.f)));
+}
+
+/// The mean hand lies there in the same way, joints included.
+void expect_mean_hand(const Result<HandMesh>& read, Side side, float most_deg) {
+  ASSERT_TRUE(read) << read.error().what;
+  const auto& mean = mean_hand(side);
+  EXPECT_EQ(read->side, side);
+  ASSERT_EQ(read->vertex_count(), mean.vertex_count());
+  for (std::size_t v = 0; v < mean.vertex_count(); ++v)
+    ASSERT_LT(glm::distance(read->positions[v], mean.positions[v]), 1e-4f) << v;
+  for (int j = 0; j < kJoints; ++j) {
+    EXPECT_LT(glm::distance(read->rest[j][3], mean.rest[j][3]), 1e-4f) << kJointNames[j];
+    EXPECT_LT(angle_deg(read->rest[j], mean.rest[j]), most_deg) << kJointNames[j];
+  }
+}
+
+constexpr float kExact_deg = 0.1f, kByPlaces_deg = 10;
+
+TEST_F(HandFile, AxesThatOtherProgramsGiveBonesAreTurned) {
+  const glm::mat3 along_y{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};  // Blender
+  const glm::mat3 along_x{{0, 0, -1}, {0, 1, 0}, {1, 0, 0}};
+  for (const auto& turn : {along_y, along_x, glm::transpose(along_x)}) {
+    ASSERT_TRUE(save_hand(with_axes([&](int) { return glm::transpose(turn); }), path("odd.glb")));
+    expect_mean_hand(load_hand(path("odd.glb"), Side::left), Side::left, kExact_deg);
+  }
+}
+
+TEST_F(HandFile, AxesThatFollowNoRuleAreTakenFromThePlacesOfTheJoints) {
+  const auto rolled = [](int joint) {
+    const auto angle = static_cast<float>(joint * 2);
+    return glm::mat3(
+        glm::rotate(glm::mat4(1), angle, glm::normalize(glm::vec3(joint % 3, 1, joint % 2))));
+  };
+  ASSERT_TRUE(save_hand(with_axes(rolled), path("odd.glb")));
+  expect_mean_hand(load_hand(path("odd.glb"), Side::left), Side::left, kByPlaces_deg);
+  HandMesh all_alike = mean_hand(Side::left);  // those of the model, as from a tool for games
+  for (auto& frame : all_alike.rest)
+    for (int k = 0; k < 3; ++k) frame[k] = glm::mat4(1)[k == 0 ? 1 : k == 1 ? 2 : 0];
+  ASSERT_TRUE(save_hand(all_alike, path("odd.glb")));
+  expect_mean_hand(load_hand(path("odd.glb"), Side::left), Side::left, kByPlaces_deg);
+}
+
+TEST_F(HandFile, AModelThatLiesOtherwiseIsTurned) {
+  HandMesh hand = mean_hand(Side::left);
+  const glm::mat4 turn{{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}};
+  for (auto& position : hand.positions) position = glm::mat3(turn) * position;
+  for (auto& normal : hand.normals) normal = glm::mat3(turn) * normal;
+  for (auto& frame : hand.rest) frame = turn * frame;
+  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
+  const auto read = load_hand(path("odd.glb"), Side::left);
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_LT(angle_deg(read->rest[1], glm::mat4(1)), kByPlaces_deg);
+  EXPECT_GT(read->normals[100].y * mean_hand(Side::left).normals[100].y, 0) << "its back is up";
+}
+
+/// Blender keeps the scale of an armature in its node, and its inverse in the matrices.
+TEST_F(HandFile, TheScaleOfAnArmatureIsKnown) {
+  HandMesh hand = mean_hand(Side::left);
+  for (auto& position : hand.positions) position *= 100.f;
+  for (auto& frame : hand.rest) frame[3] *= glm::vec4(100, 100, 100, 1);
+  ASSERT_TRUE(save_hand(hand, path("centimetres.glb")));
+  EXPECT_THAT(refusal(path("centimetres.glb")), HasSubstr("in metres"));
+  const auto file = changed_of(path("centimetres.glb"), [](json& gltf) {
+    gltf["nodes"].push_back(
+        {{"name", "Armature"}, {"scale", {0.01, 0.01, 0.01}}, {"children", {1}}});
+  });
+  expect_mean_hand(load_hand(file, Side::left), Side::left, kExact_deg);
+}
+
+TEST_F(HandFile, AHandOfTheOtherSideIsRefusedByItsThumb) {
+  ASSERT_TRUE(save_hand(mean_hand(Side::right), path("right.glb")));
+  EXPECT_THAT(refusal(path("right.glb")),
+              HasSubstr("it is a right hand, by its thumb; name it as hand.right"));
+  EXPECT_TRUE(load_hand(path("right.glb"), Side::right));
+}
+
+TEST_F(HandFile, OfTwoHandsInOneMeshEachSideFindsItsOwn) {
+  HandMesh both = mean_hand(Side::left);
+  const auto count = both.vertex_count();
+  const auto& right = mean_hand(Side::right);
+  for (std::size_t v = 0; v < count; ++v) {
+    both.positions.push_back(right.positions[v]), both.normals.push_back(right.normals[v]);
+    both.uv.push_back(right.uv[v]), both.chart.push_back(right.chart[v]);
+    auto joints = right.joints[v];
+    for (auto& joint : joints) joint = static_cast<std::uint8_t>(joint + kJoints);
+    both.joints.push_back(joints), both.weights.push_back(right.weights[v]);
+  }
+  for (auto triangle : right.triangles) {
+    for (auto& v : triangle) v = static_cast<std::uint16_t>(v + count);
+    both.triangles.push_back(triangle);
+  }
+  ASSERT_TRUE(save_hand(both, path("both.glb")));
+  // The skin of the file gets the joints of the right hand too: twice as many nodes and matrices.
+  std::string matrices;
+  for (const Side side : {Side::left, Side::right})
+    for (const auto& rest : mean_hand(side).rest) {
+      const auto inverse = glm::inverse(rest);
+      matrices.append(reinterpret_cast<const char*>(&inverse), sizeof inverse);
+    }
+  std::ofstream(path("matrices.bin"), std::ios::binary) << matrices;
+  const auto file = changed_of(path("both.glb"), [&](json& gltf) {
+    json skin{{"joints", json::array()}, {"inverseBindMatrices", gltf["accessors"].size()}};
+    json nodes = json::array();
+    for (const char* side : {".L", ".R"})
+      for (const auto& name : kJointNames) {
+        skin["joints"].push_back(nodes.size());
+        nodes.push_back({{"name", std::string(name) + side}});
+      }
+    nodes.push_back({{"mesh", 0}, {"skin", 0}});
+    gltf["buffers"].push_back({{"uri", "matrices.bin"}, {"byteLength", matrices.size()}});
+    gltf["bufferViews"].push_back(
+        {{"buffer", 1}, {"byteOffset", 0}, {"byteLength", matrices.size()}});
+    gltf["accessors"].push_back({{"bufferView", gltf["bufferViews"].size() - 1},
+                                 {"componentType", 5126},
+                                 {"count", 2 * kJoints},
+                                 {"type", "MAT4"}});
+    gltf["nodes"] = nodes;
+    gltf["skins"] = json::array({skin});
+    gltf.erase("scenes"), gltf.erase("scene");
+  });
+  for (const Side side : {Side::left, Side::right})
+    expect_mean_hand(load_hand(file, side), side, kExact_deg);
+}
+
+TEST_F(HandFile, NamesOfOtherProgramsAreUnderstood) {
+  for (const auto* style : {"%.L", "%.L.001", "l_%", "XR %", "% left"}) {
+    const auto file = changed([&](json& gltf) {
+      for (int j = 0; j < kJoints; ++j) {
+        std::string name(style);
+        name.replace(name.find('%'), 1, gltf["nodes"][j]["name"].get<std::string>());
+        gltf["nodes"][j]["name"] = name;
+      }
+    });
+    expect_mean_hand(load_hand(file, Side::left), Side::left, kExact_deg);
+  }
+  const auto unity = changed([&](json& gltf) {
+    for (int j = 0; j < kJoints; ++j) {
+      std::string name = "L_", from = gltf["nodes"][j]["name"];
+      for (const std::string part : {"palm", "wrist", "thumb", "index", "middle", "ring", "pinky",
+                                     "metacarpal", "proximal", "intermediate", "distal", "tip"})
+        if (from.find(part) != std::string::npos)
+          name += static_cast<char>(part[0] - 32) + part.substr(1);
+      gltf["nodes"][j]["name"] = name;
+    }
+  });
+  expect_mean_hand(load_hand(unity, Side::left), Side::left, kExact_deg);
+}
+
+TEST_F(HandFile, AMeshThatIsNoHandWhenItIsBentIsRefused) {
+  HandMesh cuff = mean_hand(Side::left);
+  for (auto& joints : cuff.joints) joints = {1, 1, 1, 1};
+  ASSERT_TRUE(save_hand(cuff, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")),
+              HasSubstr("no part of its mesh moves with the joints thumb-metacarpal"));
+  HandMesh exchanged =
+      mean_hand(Side::left);  // the index finger moves with the little finger's joints
+  for (auto& joints : exchanged.joints)
+    for (auto& joint : joints)
+      joint = joint >= 6 && joint < 11 ? joint + 15 : joint >= 21 ? joint - 15 : joint;
+  ASSERT_TRUE(save_hand(exchanged, path("odd.glb")));
+  EXPECT_THAT(refusal(path("odd.glb")), HasSubstr("leave their finger"));
+}
+
+TEST_F(HandFile, RequiredExtensionsAreNamedWithTheRemedy) {
+  for (const auto& [name, remedy] : {std::pair{"KHR_draco_mesh_compression", "without compression"},
+                                     {"EXT_meshopt_compression", "without compression"},
+                                     {"VENDOR_fancy", "without this extension"}}) {
+    const auto file = changed([&](json& gltf) { gltf["extensionsRequired"] = {name}; });
+    EXPECT_THAT(refusal(file), AllOf(HasSubstr(name), HasSubstr(remedy)));
+  }
+  EXPECT_TRUE(
+      load_hand(changed([](json& gltf) { gltf["extensionsRequired"] = {"KHR_materials_unlit"}; }),
+                Side::left));
+}
+
+TEST_F(HandFile, CasesThatOnceFailedAreTheMeanHand) {
+  const char* data = std::getenv("HANDCAST_DATA");
+  const auto folder = std::filesystem::path(data ? data : "../shared/data") / "cases/hands";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "HANDCAST_DATA has no folder 'cases'";
+  for (const auto* name : {"bones_along_y.glb", "both_hands_right_first.glb", "cuff_first.glb",
+                           "blender_suffix.glb"}) {
+    SCOPED_TRACE(name);
+    expect_mean_hand(load_hand(folder / name, Side::left), Side::left, kExact_deg);
+  }
+  expect_mean_hand(load_hand(folder / "both_hands_right_first.glb", Side::right), Side::right,
+                   kExact_deg);
+}
+
+TEST_F(HandFile, TheHandsOfWebXrAreReadAsTheyAre) {
+  const std::filesystem::path folder = "/usr/local/share/handcast-hands/webxr";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "not installed; see scripts/setup --hands";
+  for (const Side side : {Side::left, Side::right}) {
+    testing::internal::CaptureStderr();
+    const auto read = load_hand(folder / (side == Side::left ? "left.glb" : "right.glb"), side);
+    EXPECT_TRUE(read) << read.error().what;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  }
 }
 
 TEST_F(HandFile, MakeHandsSaysWhyItsFolderCannotBeCreated) {

@@ -48,8 +48,9 @@ calib::Calibration captures_calibration() {
 
 /// The picture at the size of the camera, interpolated: it was enlarged from that size.
 std::optional<Image<std::uint8_t>> camera_image(const std::string& name) {
-  const auto picture = read_grey_png(name + "_camera.png");
-  if (!picture) return std::nullopt;
+  const auto read = read_camera_picture(name + "_camera.png");
+  if (!read) return std::nullopt;
+  const auto& picture = read->grey;
   Image<std::uint8_t> image(720, 540);
   for (int y = 0; y < image.height(); ++y)
     for (int x = 0; x < image.width(); ++x) {
@@ -58,8 +59,8 @@ std::optional<Image<std::uint8_t>> camera_image(const std::string& name) {
       const int i = static_cast<int>(u), j = static_cast<int>(v);
       const double a = u - i, b = v - j;
       image.at(x, y) = static_cast<std::uint8_t>(
-          std::lround((1 - b) * ((1 - a) * picture->at(i, j) + a * picture->at(i + 1, j)) +
-                      b * ((1 - a) * picture->at(i, j + 1) + a * picture->at(i + 1, j + 1))));
+          std::lround((1 - b) * ((1 - a) * picture.at(i, j) + a * picture.at(i + 1, j)) +
+                      b * ((1 - a) * picture.at(i, j + 1) + a * picture.at(i + 1, j + 1))));
     }
   return image;
 }

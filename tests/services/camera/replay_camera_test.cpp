@@ -54,6 +54,38 @@ TEST_F(ReplayCamera, PlaysThePicturesInTheirOrderOverAndOver) {
   }
 }
 
+TEST_F(ReplayCamera, NumbersInNamesAreNumbers) {
+  test::write_pictures(scratch_.path() / "source", 12, kWidth, kHeight);
+  std::filesystem::create_directory(scratch_.path() / "camera");
+  for (int i = 0; i < 12; ++i)
+    std::filesystem::copy(
+        scratch_.path() / fmt::format("source/{:04}.png", i),
+        scratch_.path() / fmt::format("camera/cam2_{}.{}", 3 * i + 5, i % 2 == 0 ? "png" : "PNG"));
+  std::ofstream(scratch_.path() / "camera/._cam2_5.png") << "what macOS adds to a file";
+  const auto camera = open();
+  ASSERT_TRUE(camera) << camera.error().what;
+  for (int i = 0; i < 14; ++i) {
+    SmallFrame shot;
+    ASSERT_TRUE((*camera)->capture(shot.frame, shot.pixels.size(), Deadline::in(5s)));
+    EXPECT_THAT(shot.pixels, testing::Each(10 + shot.frame.header.frame_id % 12));
+  }
+}
+
+TEST_F(ReplayCamera, ImagesThatUseTwelveOfSixteenBitsAreNotDark) {
+  for (const int factor : {1, 16}) {  // in the lower or the upper 12 bits
+    for (int i = 0; i < 3; ++i)
+      cv::imwrite((scratch_.path() / fmt::format("{}.png", i)).string(),
+                  cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(factor * (160 + 1600 * i))));
+    const auto camera = open();
+    ASSERT_TRUE(camera) << camera.error().what;
+    for (int i = 0; i < 4; ++i) {
+      SmallFrame shot;
+      ASSERT_TRUE((*camera)->capture(shot.frame, shot.pixels.size(), Deadline::in(5s)));
+      EXPECT_THAT(shot.pixels, testing::Each(10 + 100 * (shot.frame.header.frame_id % 3)));
+    }
+  }
+}
+
 TEST_F(ReplayCamera, OriginsFollowTheTimeStamps) {
   test::write_pictures(scratch_.path(), 3, kWidth, kHeight);
   ASSERT_TRUE(recording::write_npy_i64(scratch_.path() / "camera_timestamps.npy",
@@ -102,7 +134,7 @@ TEST_F(ReplayCamera, SaysWhichPictureHasAnotherSize) {
 
 TEST_F(ReplayCamera, SaysWhichFileIsNoPicture) {
   std::ofstream(scratch_.path() / "0001.png") << "not a picture";
-  expect_refused("0001.png' is not a PNG picture");
+  expect_refused("0001.png' is not a PNG or JPEG picture");
 }
 
 TEST_F(ReplayCamera, SaysWhenTimesAndPicturesDoNotPair) {

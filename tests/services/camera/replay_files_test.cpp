@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "renderer/media/film.hpp"
 #include "services/camera/camera.hpp"
 #include "services/recording/arrays/recorded_hands.hpp"
 #include "tests/scratch.hpp"
@@ -169,7 +172,90 @@ TEST_F(ReplayFiles, AFilmIsPlayedAtItsRate) {
   set_size(64, 50);
   expect_refused(file, "is 64 x 48 px");
   std::ofstream(scratch_.path() / "text.avi") << "no film";
-  expect_refused(scratch_.path() / "text.avi", "no film that OpenCV can read");
+  expect_refused(scratch_.path() / "text.avi", "no film that FFmpeg can read");
+}
+
+/// The small inputs that once failed; empty if they are not here.
+std::filesystem::path case_of(const std::string& name) {
+  const char* data = std::getenv("HANDCAST_DATA");
+  const auto file = std::filesystem::path(data ? data : "../shared/data") / "cases" / name;
+  return std::filesystem::exists(file) ? file : std::filesystem::path();
+}
+
+/// Frames 33 ms apart, a pause of 3 s, then 17 ms.
+TEST_F(ReplayFiles, AFilmIsPlayedAtItsOwnTimes) {
+  const auto file = case_of("films/variable.mov");
+  if (file.empty()) GTEST_SKIP() << "HANDCAST_DATA has no folder 'cases'";
+  set_size(720, 540);
+  std::vector<double> at_ms;
+  for (int i = 0; i < 24; ++i)
+    at_ms.push_back(i < 8    ? i * 100 / 3.0
+                    : i < 16 ? 3000 + (i - 1) * 100 / 3.0
+                             : 3500 + (i - 16) * 50 / 3.0);
+  const double lap_ms = at_ms.back() * 24 / 23;
+  for (const std::size_t begin : {0, 6, 20}) {  // also a rig that starts again in the middle
+    epoch_ns_ = now_ns() + to_ns(50ms) - static_cast<std::int64_t>(at_ms[begin] * 1e6);
+    const auto camera = open(file);
+    ASSERT_TRUE(camera) << camera.error().what;
+    for (int i = 0; i < 3; ++i) {
+      const auto frame = next(**camera);
+      const auto k = frame->header.frame_id;
+      EXPECT_NEAR(ns_to_ms(frame->header.origin_ns - epoch_ns_),
+                  at_ms[k % 24] + lap_ms * static_cast<double>(k / 24), 1)
+          << k;
+    }
+  }
+}
+
+/// The film with the matrix of its track: what a telephone writes that was held upright.
+TEST_F(ReplayFiles, AFilmIsTurnedAsItAsksFor) {
+  const auto film = case_of("films/variable.mov");
+  if (film.empty()) GTEST_SKIP() << "HANDCAST_DATA has no folder 'cases'";
+  set_size(720, 540);
+  rig_.camera.replay.pace = config::Pace::fastest;
+  const auto upright = next(**open(film));
+  auto bytes = recording::test::contents(film);
+  const auto matrix = bytes.find("tkhd") + 4 + 40;
+  const auto put = [&](std::size_t k, std::int32_t value) {
+    for (int i = 0; i < 4; ++i)
+      bytes[matrix + 4 * k + static_cast<std::size_t>(i)] =
+          static_cast<char>(value >> (24 - 8 * i));
+  };
+  put(0, 0), put(1, 1 << 16), put(3, -(1 << 16)), put(4, 0);
+  const auto file = scratch_.path() / "turned.mov";
+  recording::test::replace(file, bytes);
+  set_size(540, 720);
+  const auto camera = open(file);
+  ASSERT_TRUE(camera) << camera.error().what;
+  const auto turned = next(**camera);
+  for (int y = 0; y < 540; y += 7)
+    for (int x = 0; x < 720; x += 7)
+      ASSERT_EQ(turned->pixels()[x * 540 + 539 - y], upright->pixels()[y * 720 + x])
+          << x << ' ' << y;
+}
+
+TEST_F(ReplayFiles, TransparentPartsOfAFilmAreDark) {
+  cv::Mat picture(6, 8, CV_8UC4, cv::Scalar(255, 255, 255, 0));
+  picture.colRange(4, 8).setTo(cv::Scalar(200, 200, 200, 128));
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", picture, png);
+  const auto file = scratch_.path() / "transparent.avi";
+  {
+    auto film = renderer::Film::create(file, 8, 6);
+    ASSERT_TRUE(film);
+    for (const std::int64_t time_ns : {0, 40'000'000}) ASSERT_TRUE(film->add(png, time_ns));
+  }
+  auto bytes = recording::test::contents(file);
+  for (auto at = bytes.find("MJPG"); at != std::string::npos; at = bytes.find("MJPG"))
+    bytes.replace(at, 4, "MPNG");
+  recording::test::replace(file, bytes);
+  set_size(8, 6);
+  rig_.camera.replay.pace = config::Pace::fastest;
+  const auto camera = open(file);
+  ASSERT_TRUE(camera) << camera.error().what;
+  const auto frame = next(**camera);
+  EXPECT_EQ(frame->pixels()[2], 0);
+  EXPECT_NEAR(frame->pixels()[6], 100, 1);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ inline std::optional<Capture> capture(int number) {
   const auto name =
       (std::filesystem::path(data ? data : "../shared/data") / "real" / std::to_string(number))
           .string();
-  auto image = renderer::read_grey_png(name + "_camera.png");
+  auto image = detect::read_grey(name + "_camera.png");
   if (!image) return std::nullopt;
   const auto joints =
       detect::read_joints(name + "_joints_2d_left.npy", image->width(), image->height());

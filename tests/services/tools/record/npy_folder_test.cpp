@@ -24,10 +24,12 @@ TEST(NpyFolder, HoldsTheSamplesAndImagesOfTheRecording) {
   ASSERT_TRUE(times_ns) << times_ns.error().what;
   EXPECT_THAT(*times_ns,
               testing::ElementsAre(1'000'000, 2'000'000, 3'000'000, 4'000'000, 5'000'000));
-  const auto picture = renderer::read_grey_png(folder / "npy/camera/000003.png");
+  const auto picture = renderer::read_camera_picture(folder / "npy/camera/000003.png");
   ASSERT_TRUE(picture) << picture.error().what;
   const auto frame = recording::test::frame(3);
-  EXPECT_EQ(std::memcmp(picture->pixels().data(), frame->pixels(), picture->pixels().size()), 0);
+  EXPECT_EQ(
+      std::memcmp(picture->grey.pixels().data(), frame->pixels(), picture->grey.pixels().size()),
+      0);
   EXPECT_TRUE(std::filesystem::exists(folder / "npy/joints_right.npy"));
   EXPECT_FALSE(std::filesystem::exists(folder / "npy/joints_left.npy"));
 }

@@ -25,10 +25,10 @@ TEST(Template, EachHandHasAColouredPictureAndALineDrawing) {
     const auto coloured = renderer::read_picture(folder / (std::string(side) + ".png"));
     ASSERT_TRUE(coloured) << coloured.error().what;
     EXPECT_EQ(coloured->width() * kProportionHeight, coloured->height() * kProportionWidth);
-    const auto lines = renderer::read_grey_png(folder / (std::string(side) + "_lines.png"));
+    const auto lines = renderer::read_camera_picture(folder / (std::string(side) + "_lines.png"));
     ASSERT_TRUE(lines) << lines.error().what;
-    EXPECT_EQ(lines->width(), 512);
-    EXPECT_EQ(lines->height(), 320);
+    EXPECT_EQ(lines->grey.width(), 512);
+    EXPECT_EQ(lines->grey.height(), 320);
   }
 }
 
