@@ -42,6 +42,7 @@ PRINTERS = [
     ("services/lab/simulate/run.cpp", r"[:;,] ([a-z][a-z ]+?)(?: mean)? \{\}", 4),
     ("services/observer/main.cpp", r"([a-z][a-z0-9 ]*[a-z0-9]) \{:", 3),
     ("services/tools/preview/layout/legend.cpp", r'"([ABCD]) [a-z ]+"', 4),
+    ("scripts/pages/report/accuracy.py", r'", \("(\w+)"', 12),
     ("ipc/msg/stage_mark.hpp", r"kStageNames\{([^}]*)\}", 1),
     ("ipc/msg/rung.hpp", r"kRungNames\{([^}]*)\}", 1),
     ("ipc/msg/tracker_faults.hpp", r"kTrackerFaultNames\{([^}]*)\}", 1),
