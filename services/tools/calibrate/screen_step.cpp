@@ -167,9 +167,9 @@ Off off_of(const calib::Calibration& used, const calib::DepthView& view) {
     depths_m.push_back(depth_m);
   }
   if (off_px.empty()) return {};
-  return {calib::median(off_px),
-          calib::median(depths_m),
-          {calib::median(right_px), calib::median(down_px)}};
+  return {median(off_px),
+          median(depths_m),
+          {median(right_px), median(down_px)}};
 }
 
 /// "0.3 px to the left, 1.2 px down", for what does not round to zero.
