@@ -137,7 +137,7 @@ DRAWN = {"dots": draw_dots, "bars": draw_bars, "depths": draw_depths, "gamma": d
 
 def table_of(caption, numbers):
     """The errors at places of the volume."""
-    rows = [("corner" if row else "middle", [f"{value:.{digits}f}" for value, (_, _, digits) in zip(values, PLACES)])
+    rows = [("corner" if row else "middle", [f"{round(value, digits) + 0.0:.{digits}f}" for value, (_, _, digits) in zip(values, PLACES)])
             for row, values in enumerate(zip(*(numbers[name] for name, _, _ in PLACES)))]
     return Figure(caption, columns=tuple(heading for _, heading, _ in PLACES), rows=tuple(rows))
 

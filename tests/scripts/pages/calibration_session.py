@@ -48,7 +48,7 @@ def histograms():
 
 def places():
     """What a fit does not know in the middle and at the corners."""
-    return picture("places", "What the fit does not know.", right_mm=[0, -120, 120], down_mm=[0, -90, 90], far_m=[0.73, 0.58, 0.88],
+    return picture("places", "What the fit does not know.", right_mm=[-0.2, -120, 120], down_mm=[0, -90, 90], far_m=[0.73, 0.58, 0.88],
                    light_mm=[0.62, 1.3, 1.12], space_mm=[1.5, 2.4, 2.26])
 
 
