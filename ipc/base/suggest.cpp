@@ -27,6 +27,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string suggest(std::string_view wrong, const std::vector<std::string_view>& known) {
+  constexpr std::size_t kLongestName = 100;  // the distance takes the product of the lengths
+  if (wrong.size() > kLongestName) return {};
   std::string_view best;
   std::size_t best_distance = std::max<std::size_t>(2, wrong.size() / 3) + 1;
   for (const auto name : known) {

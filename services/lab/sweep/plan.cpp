@@ -186,7 +186,8 @@ class Reader {
     const auto document = nested(path, value);
     config::apply_document(document, file_.string(), listing_, faults_);
     const auto text = print(value);
-    const bool is_path = config::is_path(path, text);
+    // A path in the home folder is absolute as it is: the rig's reader expands it.
+    const bool is_path = config::is_path(path, text) && !text.starts_with('~');
     return {text, is_path ? (folder_ / text).lexically_normal().string() : text, value.line};
   }
 

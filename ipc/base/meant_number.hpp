@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace handcast {
+
+/// What a person probably meant by a text that is not a number for a program but begins like one:
+/// "60,5", "60 Hz", "50%", "1'000", ".5", "060". A sentence with the number to write, e.g. "write
+/// 60.5, with a decimal point"; "" if the text is a plain number, or no number at all.
+std::string meant_number(std::string_view text);
+
+}  // namespace handcast
