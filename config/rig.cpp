@@ -39,10 +39,11 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};
 
-/// What is wrong with a path as it is written; "" if nothing is, or if there is such a file.
+/// What is wrong with a path as it is written; "" if nothing is, if it is absolute, or if there is
+/// such a file.
 std::string fault_of_path(const std::string& path, const std::filesystem::path& folder) {
   std::error_code unknown;
-  if (std::filesystem::exists(folder / path, unknown)) return {};
+  if (path.starts_with('/') || std::filesystem::exists(folder / path, unknown)) return {};
   if (std::ranges::any_of(path, [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
     return quote(path) +
            " is not a path: in double quotes, \\n, \\t and the like are escapes; write single ones";

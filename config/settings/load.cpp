@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "ipc/base/join.hpp"
-#include "ipc/base/meant_number.hpp"
 #include "ipc/base/quote.hpp"
 #include "ipc/base/suggest.hpp"
 

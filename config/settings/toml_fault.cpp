@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "ipc/base/meant_number.hpp"
 #include "ipc/base/quote.hpp"
+#include "ipc/base/suggest.hpp"
 
 namespace handcast::config {
 namespace {
@@ -337,9 +337,9 @@ MaybeGuess guess_line(std::string_view line) {
   if (equals == kNone) return line_without_equals(line, begin);
   if (auto guess = faulty_key(line, begin, equals)) return guess;
   const auto key = trimmed(line.substr(begin, equals - begin));
-  if (equals + 1 < line.size() && line[equals + 1] == '=')
-    return Guess{equals + 1, "between a name and its value there is one ="};
   const auto value = line.find_first_not_of(kSpace, equals + 1);
+  if (value != kNone && line[value] == '=')
+    return Guess{value, "between a name and its value there is one ="};
   if (value == kNone || line[value] == '#')
     return Guess{equals + 1, fmt::format("the value is missing behind {} =", key)};
   if (line[value] == '"' || line[value] == '\'') return quoted_value(line, value, key);

@@ -12,7 +12,6 @@
 #include "ipc/base/home.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
-#include "ipc/base/meant_number.hpp"
 #include "ipc/base/quote.hpp"
 #include "ipc/base/suggest.hpp"
 #include "ipc/base/version.hpp"

@@ -25,7 +25,7 @@
 #include "supervisor/base/spawn.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/spec/catalogue.hpp"
-#include "supervisor/spec/idle_settings.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 #include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {

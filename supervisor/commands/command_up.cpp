@@ -11,7 +11,7 @@
 #include "supervisor/rig/rig_runner.hpp"
 #include "supervisor/rig/takeover.hpp"
 #include "supervisor/spec/catalogue.hpp"
-#include "supervisor/spec/idle_settings.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 #include "supervisor/succession/keeper.hpp"
 
 namespace handcast::supervisor {

@@ -215,8 +215,9 @@ handcast::Result<Report> run(const Options& options) {
   // Without a tracker's joints, only the picture tells where a hand is.
   const bool has_joints = !options.joints.empty();
   using Poses = landmarks::HandFinder::Poses;
+  constexpr int kPlaces = 6;  // nobody waits for the next image
   landmarks::HandFinder finder(std::move(*model), options.hands,
-                               has_joints ? Poses::of_a_tracker : Poses::of_landmarks);
+                               has_joints ? Poses::of_a_tracker : Poses::of_landmarks, kPlaces);
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
   std::vector<Result> results;
   std::string text;

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::init {
 namespace {
@@ -154,11 +155,11 @@ Result<std::size_t> find(std::span<const Candidate> candidates, std::string_view
     if (found.size() == 1) return found.front();
     if (!found.empty())
       return fail(Errc::bad_config,
-                  fmt::format("'{}' can be {}", answer, words_of(candidates, found)));
+                  fmt::format("{} can be {}", quote(answer), words_of(candidates, found)));
   }
   const auto all = those(candidates, [](const Candidate&) { return true; });
   return fail(Errc::unavailable,
-              fmt::format("there is no '{}'; there is {}", answer, words_of(candidates, all)));
+              fmt::format("there is no {}; there is {}", quote(answer), words_of(candidates, all)));
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/rig_name.hpp"
 #include "services/tools/devices/trackers.hpp"
 
@@ -62,8 +63,8 @@ Result<void> take_tracker(const std::string& answer, const std::vector<devices::
                           Plan& plan) {
   const auto words = tracker_words(attached);
   if (std::ranges::find(words, answer) == words.end())
-    return fail(Errc::bad_config,
-                fmt::format("'{}' is not {}{}", answer, join(words, " or "), why_absent(answer)));
+    return fail(Errc::bad_config, fmt::format("{} is not {}{}", quote(answer), join(words, " or "),
+                                              why_absent(answer)));
   if (answer == "twin" && plan.camera.is_device())
     return fail(Errc::bad_config,
                 "the twin's tracker does not see the hand in front of a real camera; take none");
@@ -112,8 +113,8 @@ Result<void> take_distance(const std::string& answer, Plan& plan) {
   const std::string_view rest(read.ptr, end);
   if (read.ec != std::errc{} || (!rest.empty() && rest != "m" && rest != " m") ||
       !(distance_m >= kNearest_m && distance_m <= kFarthest_m))
-    return fail(Errc::bad_config, fmt::format("'{}' is no number of metres from {} to {}", answer,
-                                              kNearest_m, kFarthest_m));
+    return fail(Errc::bad_config, fmt::format("{} is no number of metres from {} to {}",
+                                              quote(answer), kNearest_m, kFarthest_m));
   plan.distance_m = distance_m;
   return {};
 }
@@ -182,7 +183,7 @@ Question name_question(const Options& options, Plan& plan) {
           .take = [&plan](const std::string& answer) -> Result<void> {
             if (!is_rig_name(answer))
               return fail(Errc::bad_config,
-                          fmt::format("'{}' is no name of a rig; {}", answer, kRigNameRule));
+                          fmt::format("{} is no name of a rig; {}", quote(answer), kRigNameRule));
             plan.name = answer;
             return {};
           }};

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "supervisor/spec/idle_settings.hpp"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
+#include "supervisor/spec/fingerprint.hpp"
 #include "tests/supervisor/spec/built_catalogue.hpp"
 
 namespace handcast::supervisor {
