@@ -162,6 +162,22 @@ Result<std::size_t> find(std::span<const Candidate> candidates, std::string_view
               fmt::format("there is no {}; there is {}", quote(answer), words_of(candidates, all)));
 }
 
+std::optional<Candidate> not_attached(std::string_view answer,
+                                      std::span<const std::string_view> backends) {
+  const auto colon = answer.find(':');
+  const std::string backend(answer.substr(0, colon));
+  if (colon == answer.npos || std::ranges::find(backends, backend) == backends.end())
+    return std::nullopt;
+  const std::string name(answer.substr(colon + 1));
+  if (name.empty() || !std::ranges::all_of(name, is_plain)) return std::nullopt;
+  const auto text = name + ", which is not attached now";
+  Candidate later{
+      .word = std::string(answer), .text = text, .backend = backend, .name = name, .device = {}};
+  later.device.name = text;
+  later.device.names = {name};
+  return later;
+}
+
 namespace {
 
 using devices::Mode;
