@@ -12,6 +12,7 @@
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 /// The calibration file: TOML, declared, checked and printed like a rig file (config/settings).
 namespace handcast::calib {
@@ -97,11 +98,10 @@ Result<Calibration> load_calibration(const std::filesystem::path& path) {
 Result<void> check_device(std::string_view what, std::string_view calibrated,
                           std::initializer_list<std::string_view> names) {
   if (calibrated.empty() || std::ranges::find(names, calibrated) != names.end()) return {};
-  return fail(
-      Errc::bad_config,
-      fmt::format("the calibration was made with the {0} '{1}', and this is '{2}'; name the "
-                  "calibration of this {0} in the rig file (calibration), or calibrate it",
-                  what, calibrated, *names.begin()));
+  return fail(Errc::bad_config,
+              fmt::format("the calibration was made with the {0} {1}, and this is {2}; name the "
+                          "calibration of this {0} in the rig file (calibration), or calibrate it",
+                          what, quote(calibrated), quote(*names.begin())));
 }
 
 std::string print_calibration(const Calibration& calibration) {

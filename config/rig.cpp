@@ -12,6 +12,8 @@
 #include "config/settings/frozen_file.hpp"
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
+#include "ipc/base/home.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/rig_name.hpp"
 
 namespace handcast::config {
@@ -37,11 +39,28 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};
 
-/// Makes relative paths absolute.
-void resolve_paths(const Listing& listing, const std::filesystem::path& folder) {
+/// What is wrong with a path as it is written; "" if nothing is, if it is absolute, or if there is
+/// such a file.
+std::string fault_of_path(const std::string& path, const std::filesystem::path& folder) {
+  std::error_code unknown;
+  if (path.starts_with('/') || std::filesystem::exists(folder / path, unknown)) return {};
+  if (std::ranges::any_of(path, [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+    return quote(path) +
+           " is not a path: in double quotes, \\n, \\t and the like are escapes; write single ones";
+  return odd_path(path);
+}
+
+/// Makes paths that are relative, or begin with ~, absolute. `where`: of the fault, "rig.toml" or
+/// "--set".
+void resolve_paths(const Listing& listing, const std::filesystem::path& folder,
+                   std::string_view where, Faults& faults) {
   for (const auto path : kPaths) {
     auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
-    if (is_path(path, text)) text = (folder / text).lexically_normal().string();
+    if (!is_path(path, text)) continue;
+    auto whole = expand_home(text);
+    const auto fault = whole ? fault_of_path(*whole, folder) : whole.error().what;
+    if (!fault.empty()) faults.add(fmt::format("{}: {}: {}", where, path, fault));
+    text = fault.empty() ? (folder / *whole).lexically_normal().string() : "";
   }
 }
 
@@ -68,7 +87,7 @@ void check_currents(const Dlp& dlp, std::string_view file, Faults& faults) {
 /// Checks conditions between settings, and those that their ranges do not express.
 void check_together(const Rig& rig, std::string_view file, Faults& faults) {
   if (!is_rig_name(rig.name))
-    faults.add(fmt::format("{}: name: '{}' is not a valid name of a rig; {}", file, rig.name,
+    faults.add(fmt::format("{}: name: {} is not a valid name of a rig; {}", file, quote(rig.name),
                            kRigNameRule));
   check_cores(rig, file, faults);
   check_currents(rig.dlp, file, faults);
@@ -94,10 +113,10 @@ Result<Rig> parse_layers(std::span<const NamedText> layers,
     const auto document = parse_document(toml, file);
     if (!document) return tl::make_unexpected(document.error());
     apply_document(*document, file, listing, faults);
-    resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path());
+    resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path(), file, faults);
   }
   for (const auto& setting : settings) apply_assignment(setting, listing, faults);
-  resolve_paths(listing, std::filesystem::current_path(gone));
+  resolve_paths(listing, std::filesystem::current_path(gone), "--set", faults);
   check_together(rig, layers.front().path, faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   return rig;

@@ -41,3 +41,16 @@ for_sed() { printf '%s' "$1" | sed 's/[&#\\]/\\&/g'; }
 
 # need_value "$@": checks that the option $1 is followed by a value.
 need_value() { [ $# -ge 2 ] || die "$1 needs a value; see --help"; }
+
+# split_values "$@": puts the arguments into the array words, "--name=value" as two of them, up to "--".
+split_values() {
+  words=()
+  while [ $# -gt 0 ] && [ "$1" != -- ]; do
+    case $1 in
+      --*=*) words+=("${1%%=*}" "${1#*=}") ;;
+      *) words+=("$1") ;;
+    esac
+    shift
+  done
+  words+=("$@")
+}

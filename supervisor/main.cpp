@@ -10,6 +10,7 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/suggest.hpp"
 #include "ipc/base/version.hpp"
 #include "supervisor/commands/verbs.hpp"
@@ -54,22 +55,26 @@ int become_program(const std::string& verb, const Arguments& arguments) {
   std::vector<std::string_view> names;
   for (const auto& each : verbs()) names.push_back(each.name);
   const auto nearest = suggest(verb, names);
-  return complain(kExitUsage, fmt::format("there is no verb '{}'{}; there are: {}", verb, nearest,
-                                          join(names, ", ")));
+  return complain(kExitUsage, fmt::format("there is no verb {}{}; there are: {}", quote(verb),
+                                          nearest, join(names, ", ")));
 }
+
+int dispatch(const std::string& name, const Arguments& arguments);
 
 int help(const Arguments& arguments) {
   if (arguments.empty()) {
     print_overview();
     return kExitDone;
   }
-  const auto verb = find_verb(arguments.front());
-  return verb && verb->run ? verb->run({"--help"}) : become_program(arguments.front(), {"--help"});
+  const auto& about = arguments.front();
+  if (about == "help" || about == "version") return dispatch(about, {});
+  const auto verb = find_verb(about);
+  return verb && verb->run ? verb->run({"--help"}) : become_program(about, {"--help"});
 }
 
 int dispatch(const std::string& name, const Arguments& arguments) {
   if (name == "help" || name == "--help" || name == "-h") return help(arguments);
-  if (name == "--version") {
+  if (name == "version" || name == "--version" || name == "-V") {
     fmt::print("handcast {}\n{}", version(), absent_features());
     return kExitDone;
   }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "config/settings/toml_fault.hpp"
+
 namespace handcast::config {
 namespace {
 
@@ -86,6 +88,8 @@ int line_of_deep_key(std::string_view toml, int most) {
 }  // namespace
 
 Result<Value> parse_document(std::string_view toml, std::string_view file) {
+  if (auto other = other_kind_of_file(toml, file); !other.empty())
+    return fail(Errc::bad_config, std::move(other));
   constexpr int kMostDots = 32;
   if (const int line = line_of_deep_key(toml, kMostDots); line > 0)
     return fail(Errc::bad_config,
@@ -94,8 +98,9 @@ Result<Value> parse_document(std::string_view toml, std::string_view file) {
     return convert_table(toml::parse(toml, file), 1);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    return fail(Errc::bad_config, fmt::format("{}:{}:{}: not TOML: {}", file, at.line, at.column,
-                                              error.description()));
+    return fail(Errc::bad_config,
+                toml_fault(toml, file, {static_cast<int>(at.line), static_cast<int>(at.column)},
+                           error.description()));
   }
 }
 

@@ -34,7 +34,8 @@ struct Member {
 };
 
 /// Parses a TOML document into one table. The only function that uses a TOML library. `file` is
-/// used in messages. Errors: bad_config ("FILE:LINE:COLUMN: …" if the text is not TOML).
+/// used in messages. Errors: bad_config ("FILE:LINE:COLUMN: …", what was
+/// probably meant, and the line: see toml_fault()).
 Result<Value> parse_document(std::string_view toml, std::string_view file);
 
 /// The kind of a value for messages: "a number", "text", "a section".

@@ -8,10 +8,13 @@
 #include <optional>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/suggest.hpp"
 
 namespace handcast::config {
 namespace {
+
+constexpr std::size_t kLongestPath = 200;  ///< bytes of the name of a setting in a message
 
 /// The problem with a value; empty if there is none.
 using Complaint = std::string;
@@ -31,8 +34,23 @@ Complaint expected(const Setting& setting) {
                      allowed);
 }
 
+/// A number in quotes.
+std::string number_meant_by(std::string_view text) {
+  if (auto meant = meant_number(text); !meant.empty()) return meant;
+  return !text.empty() && text.find_first_not_of("0123456789.") == text.npos
+             ? fmt::format("write {}, without quotes", text)
+             : "";
+}
+
 Complaint wrong_kind(const Value& value, const Setting& setting) {
-  return fmt::format("{}, not {}", expected(setting), kind_of(value));
+  const auto* text = std::get_if<std::string>(&value.data);
+  const auto& target = setting.target;
+  const bool wants_number = std::holds_alternative<int*>(target) ||
+                            std::holds_alternative<double*>(target) ||
+                            std::holds_alternative<std::vector<double>*>(target);
+  const auto meant = text && wants_number ? number_meant_by(*text) : "";
+  return fmt::format("{}, not {}{}{}", expected(setting), kind_of(value), meant.empty() ? "" : "; ",
+                     meant);
 }
 
 std::optional<double> number_in(const Value& value) {
@@ -80,7 +98,7 @@ Complaint store(const ChoiceTarget& target, const Value& value, const Setting& s
   if (!text) return wrong_kind(value, setting);
   const auto found = std::ranges::find(target.words, *text);
   if (found == target.words.end())
-    return fmt::format("'{}' is not {}{}", *text, print_allowed(setting),
+    return fmt::format("{} is not {}{}", quote(*text), print_allowed(setting),
                        suggest(*text, target.words));
   target.assign(target.value, static_cast<std::size_t>(found - target.words.begin()));
   return {};
@@ -181,7 +199,8 @@ class Applier {
  private:
   void complain(const Value& value, std::string_view path, const Complaint& complaint) {
     if (!complaint.empty())
-      faults_.add(fmt::format("{}:{}: {}: {}", file_, value.line, path, complaint));
+      faults_.add(fmt::format("{}:{}: {}: {}", file_, value.line, shown_line(path, kLongestPath),
+                              complaint));
   }
 
   std::string_view file_;
@@ -232,7 +251,7 @@ void apply_document(const Value& document, std::string_view file, const Listing&
 
 void apply_assignment(std::string_view assignment, const Listing& listing, Faults& faults) {
   const auto complain = [&](std::string_view sentence) {
-    faults.add(fmt::format("--set {}: {}", assignment, sentence));
+    faults.add(fmt::format("--set {}: {}", shown_line(assignment, kLongestPath), sentence));
   };
   const auto equals = assignment.find('=');
   if (equals == assignment.npos) return complain("must look like path=value");
@@ -243,7 +262,9 @@ void apply_assignment(std::string_view assignment, const Listing& listing, Fault
   const auto* setting = find_setting(listing, path);
   if (!setting) return complain(unknown_path(listing, path));
   const auto value = read_assigned(text, setting->target);
-  const auto complaint = value ? store(*value, *setting) : expected(*setting);
+  const auto meant = value ? "" : meant_number(text);
+  const auto complaint =
+      value ? store(*value, *setting) : expected(*setting) + (meant.empty() ? "" : "; " + meant);
   if (!complaint.empty()) complain(complaint);
 }
 

@@ -9,8 +9,10 @@
 #include <sstream>
 
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/home.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/suggest.hpp"
 #include "ipc/base/version.hpp"
 
@@ -47,9 +49,10 @@ Result<double> parse_number(const std::string& text, CommandLine::Range range, b
   if (is_number && number >= range.least && number <= range.most &&
       (!is_whole || number == std::floor(number)))
     return number;
-  return fail(Errc::bad_config,
-              fmt::format("'{}' is not a {} in the range {} to {}", text,
-                          is_whole ? "whole number" : "number", range.least, range.most));
+  const auto meant = is_number ? "" : meant_number(text);
+  return fail(Errc::bad_config, fmt::format("{} is not a {} in the range {} to {}{}{}", quote(text),
+                                            is_whole ? "whole number" : "number", range.least,
+                                            range.most, meant.empty() ? "" : "; ", meant));
 }
 
 }  // namespace
@@ -86,13 +89,15 @@ void CommandLine::add_number(std::string usage, std::function<void(double)> set,
   add(std::move(usage), Setter(parse), help + ")");
 }
 
-Result<void> CommandLine::take(Argument& argument, const std::string& value) const {
+/// A shell puts the home folder in the place of ~ only at the start of a word: not in "--out=~/a".
+Result<void> CommandLine::take(Argument& argument, const std::string& written) const {
+  const auto value = expand_home(written).value_or(written);
   argument.is_given = true;
   const auto choices = split(argument.value, '|');
   auto set = choices.size() < 2 || std::ranges::count(choices, value) > 0
                  ? argument.set(value)
                  : fail(Errc::bad_config,
-                        fmt::format("'{}' is not one of {}", value, join(choices, ", ")));
+                        fmt::format("{} is not one of {}", quote(value), join(choices, ", ")));
   if (!set) return refusal(fmt::format("{}: {}", argument.names.back(), set.error().what));
   return set;
 }
@@ -101,7 +106,7 @@ Result<void> CommandLine::take_word(const std::string& word) {
   for (auto& each : arguments_)
     if (each.is_word && (!each.is_given || each.usage.find("...") != std::string::npos))
       return take(each, word);
-  return refusal(fmt::format("'{}' is one argument too many", word));
+  return refusal(quote(word) + " is one argument too many");
 }
 
 /// Takes the option at `at`, which then is the place of its value.
@@ -116,8 +121,8 @@ Result<void> CommandLine::take_option(const std::vector<std::string>& arguments,
     for (const auto& each : arguments_)
       if (!each.is_word && !each.help.empty() && each.names.back().size() > 2)
         known.push_back(each.names.back());
-    return refusal(
-        fmt::format("unknown option '{}'{}", word, suggest(word.substr(0, word.find('=')), known)));
+    return refusal(fmt::format("unknown option {}{}", quote(word),
+                               suggest(word.substr(0, word.find('=')), known)));
   }
   const bool is_joined = name.size() < word.size();
   if (option->value.empty() && is_joined) return refusal(name + " takes no value");

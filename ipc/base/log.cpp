@@ -17,6 +17,7 @@
 #include <mutex>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/unique_fd.hpp"
 
 namespace handcast {
@@ -84,18 +85,19 @@ std::size_t ImpatientWriter::write_some(std::string_view text) const {
   return static_cast<std::size_t>(std::max<ssize_t>(count, 0));
 }
 
+constexpr std::size_t kLongestLine = 2000;
+
 }  // namespace
 
 std::string printable(std::string_view text) {
   std::string shown;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f)
-      shown += fmt::format("\\x{:02x}", byte);
-    else
-      shown += c;
+  for (;;) {
+    const auto end = text.find('\n');
+    shown += shown_line(text.substr(0, end), kLongestLine);
+    if (end == text.npos) return shown;
+    shown += '\n';
+    text.remove_prefix(end + 1);
   }
-  return shown;
 }
 
 }  // namespace handcast

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::control {
 namespace {
@@ -43,7 +44,7 @@ Result<Request> parse_request(std::string_view line) {
   const auto verb = std::ranges::find(kVerbs, name);
   if (verb == kVerbs.end())
     return fail(Errc::bad_data,
-                fmt::format("no verb '{}'; there are: {}", name, join(kVerbs, ", ")));
+                fmt::format("no verb {}; there are: {}", quote(name), join(kVerbs, ", ")));
 
   const Request request{static_cast<Verb>(verb - kVerbs.begin()), text_of(object, "service"),
                         text_of(object, "backend"), number_of(object, "seconds")};

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "ipc/base/quote.hpp"
+
 namespace handcast::daemon {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BackendDescription, name, sentence, settings, exclusive)
@@ -19,7 +21,8 @@ std::string print_description(const ServiceDescription& description) {
 Result<ServiceDescription> parse_description(std::string_view json) try {
   return nlohmann::json::parse(json).get<ServiceDescription>();
 } catch (const nlohmann::json::exception& problem) {
-  return fail(Errc::bad_data, fmt::format("not a description of a service: {}", problem.what()));
+  return fail(Errc::bad_data,
+              fmt::format("not a description of a service: {}", shown_line(problem.what(), 200)));
 }
 
 std::string print_backends(const ServiceDescription& description) {

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ipc/base/quote.hpp"
 #include "renderer/content/chart_map.hpp"
 #include "renderer/content/lettering.hpp"
 #include "renderer/media/picture.hpp"
@@ -233,8 +234,8 @@ Result<Texture> load_content(const std::string& what, const HandMesh& hand) {
   if (!what.starts_with(kBuiltin)) return read_picture(what);
   const std::string name = what.substr(kBuiltin.size());
   if (auto texture = paint_builtin(name, hand)) return std::move(*texture);
-  return fail(Errc::bad_config, fmt::format("There is no built-in content '{}'; the names are {}.",
-                                            name, kBuiltinNames));
+  return fail(Errc::bad_config, fmt::format("There is no built-in content {}; the names are {}.",
+                                            quote(name), kBuiltinNames));
 }
 
 std::string note_on_proportions(const std::string& what, const Texture& picture) {

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -108,7 +109,8 @@ Result<tinygltf::Model> read_gltf(const std::filesystem::path& file) {
     return refuse(fmt::format("its JSON is nested more than {} deep", kMostDepth));
   tinygltf::Model model;
   std::string error;
-  if (!parse(file, *bytes, model, error)) return refuse(error.substr(0, error.find('\n')));
+  if (!parse(file, *bytes, model, error))
+    return refuse(shown_line(error.substr(0, error.find('\n')), 300));
   return model;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::renderer::kms {
 namespace {
@@ -92,9 +93,8 @@ std::string list_of(std::span<const Display> displays) {
 std::string sentence_of(std::size_t fitting, std::string_view wanted) {
   if (fitting > 1)
     return wanted.empty() ? "several displays are connected"
-                          : fmt::format("several displays are called '{}'", wanted);
-  return wanted.empty() ? "no display is connected"
-                        : fmt::format("there is no display '{}'", wanted);
+                          : "several displays are called " + quote(wanted);
+  return wanted.empty() ? "no display is connected" : "there is no display " + quote(wanted);
 }
 
 }  // namespace

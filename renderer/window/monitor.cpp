@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -48,9 +49,9 @@ Result<std::size_t> choose_monitor(std::span<const Monitor> monitors, std::strin
 
   const auto sentence =
       fit.empty() ? (wanted.empty() ? std::string("there is no monitor besides the primary one")
-                                    : fmt::format("there is no monitor '{}'", wanted))
+                                    : "there is no monitor " + quote(wanted))
                   : (wanted.empty() ? std::string("several monitors are possible")
-                                    : fmt::format("several monitors are called '{}'", wanted));
+                                    : "several monitors are called " + quote(wanted));
   return fail(fit.empty() ? Errc::unavailable : Errc::bad_config,
               fmt::format("{}; {}; set projector.window.monitor to the output, model or index of "
                           "one",

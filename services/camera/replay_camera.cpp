@@ -74,7 +74,8 @@ class ReplayCamera final : public Camera {
 };
 
 Result<PlayedPictures> open_pictures(const fs::path& from, const PlayedAs& as) {
-  if (from.extension() == ".npy") return open_npy_pictures(from, as);
+  if (const auto suffix = from.extension(); suffix == ".npy" || suffix == ".NPY")
+    return open_npy_pictures(from, as);
   std::error_code failed;
   if (fs::is_regular_file(from, failed)) return open_film_pictures(from, as);
   if (recording::is_recording(from)) return open_recorded_pictures(from, as);

@@ -6,6 +6,7 @@
 
 #include "config/sections/twin/world_settings.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
@@ -70,9 +71,9 @@ static Result<Opening> opening_of(const config::Rig& rig, const calib::Calibrati
   auto settings = config::landmarks_at(rig, at);
   const auto& fallback = settings.fallback;
   if (!fallback.empty() && std::ranges::find(names, fallback) == names.end())
-    return fail(Errc::bad_config, fmt::format("{}: there is no back end '{}'; there are: {}",
-                                              config::name_at(at, "landmarks.fallback"), fallback,
-                                              join(names, ", ")));
+    return fail(Errc::bad_config, fmt::format("{}: there is no back end {}; there are: {}",
+                                              config::name_at(at, "landmarks.fallback"),
+                                              quote(fallback), join(names, ", ")));
   auto camera = calib::camera_at(calibration, at);
   if (!camera) return tl::make_unexpected(camera.error());
   settings.backend = choose_detector(rig, at).backend;

@@ -13,6 +13,7 @@
 
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/quote.hpp"
 #include "services/recording/about.hpp"
 
 namespace handcast::recording {
@@ -86,9 +87,9 @@ Result<void> check_layout(const fs::path& folder, std::string_view stream,
                 fmt::format("{}: the recording has no stream '{}'", folder.string(), stream));
   if (found->second != type.layout)
     return fail(Errc::bad_config,
-                fmt::format("{}: the messages of '{}' are of type '{}', and this version of "
+                fmt::format("{}: the messages of '{}' are of type {}, and this version of "
                             "handcast reads '{}'; play it with the version that recorded it",
-                            folder.string(), stream, found->second, type.layout));
+                            folder.string(), stream, quote(found->second), type.layout));
   return {};
 }
 

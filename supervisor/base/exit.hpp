@@ -19,6 +19,8 @@ struct Exit {
   bool is_success() const { return !signalled && !unknown && code == kExitDone; }
   /// True for exit 100: the process cannot work until a person changes something.
   bool asks_for_a_person() const { return !signalled && !unknown && code == kExitConfig; }
+  /// True for exit 111: something that it needs is missing now.
+  bool asks_to_retry() const { return !signalled && !unknown && code == kExitRetry; }
   /// "exit 100", "signal 9 (Killed)" or "end unknown".
   std::string describe() const {
     if (unknown) return "end unknown";

@@ -19,11 +19,13 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/daemon/check_word.hpp"
 #include "supervisor/base/spawn.hpp"
 #include "supervisor/commands/verbs.hpp"
 #include "supervisor/spec/catalogue.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 #include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
@@ -144,6 +146,8 @@ int check(const config::Rig& rig, const std::string& file,
   const auto faults = faults_of(rig, file, settings);
   if (!faults.empty())
     return complain(kExitConfig, fmt::format("{}:\n{}", file, join(faults, "\n")));
+  for (const auto& note : idle_settings(rig, installed_services(), settings))
+    fmt::print("note: {}\n", printable(note));
   fmt::print("{} is in order\n", file);
   return kExitDone;
 }

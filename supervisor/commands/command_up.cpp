@@ -10,6 +10,8 @@
 #include "supervisor/rig/applied_rig.hpp"
 #include "supervisor/rig/rig_runner.hpp"
 #include "supervisor/rig/takeover.hpp"
+#include "supervisor/spec/catalogue.hpp"
+#include "supervisor/spec/fingerprint.hpp"
 #include "supervisor/succession/keeper.hpp"
 
 namespace handcast::supervisor {
@@ -67,6 +69,12 @@ Result<void> create_out(const std::optional<std::filesystem::path>& out) {
               fmt::format("--out: {} cannot be created: {}", out->string(), error.message()));
 }
 
+void say_what_is_idle(const config::Rig& rig, const RunOptions& options) {
+  const auto catalogue = read_catalogue(catalogue_folder(options.program_folder));
+  for (const auto& note : idle_settings(rig, catalogue, options.settings))
+    log::info("note: {}", note);
+}
+
 int run(RunOptions options) {
   if (const auto created = create_out(options.out); !created) return complain(created.error());
   const auto applied = applied_before(options.rig_file, options.settings);
@@ -76,6 +84,7 @@ int run(RunOptions options) {
               applied->name, options.rig_file.string());
   const auto rig = applied ? *applied : load_rig_to_apply(options.rig_file, options.settings);
   if (!rig) return complain(rig.error());
+  if (!applied) say_what_is_idle(*rig, options);
   auto runner = RigRunner::open(*rig, std::move(options));
   if (!runner) return complain(runner.error());
   return (*runner)->run();

@@ -27,11 +27,25 @@ bool LogTail::read_from(int fd, const std::function<void(std::string_view)>& on_
   return true;
 }
 
+/// The line without the prefix of handcast's log.
+static std::string_view sentence_of(std::string_view line) {
+  const auto logged = log::parse(line);
+  return logged ? logged->sentence : line;
+}
+
+bool LogTail::is_known(std::string_view line) const {
+  return std::ranges::any_of(lines_, [sentence = sentence_of(line)](const std::string& other) {
+    return sentence_of(other) == sentence;
+  });
+}
+
 void LogTail::finish_line(const std::function<void(std::string_view)>& on_line) {
   const auto logged = log::parse(unfinished_);
-  if (logged && logged->level == log::Level::error && logged->sentence == last_sentence())
+  const bool repeats =
+      logged && logged->level == log::Level::error && logged->sentence == last_sentence();
+  if (repeats && !leaves_out_known_)
     on_line(unfinished_.substr(0, unfinished_.size() - logged->sentence.size()) + "as before");
-  else
+  else if (!leaves_out_known_ || !is_known(unfinished_))
     on_line(unfinished_);
   lines_.push_back(std::move(unfinished_));
   unfinished_.clear();
@@ -44,9 +58,7 @@ std::vector<std::string> LogTail::last(std::size_t count) const {
 }
 
 std::string LogTail::last_sentence() const {
-  if (lines_.empty()) return {};
-  const auto logged = log::parse(lines_.back());
-  return logged ? std::string(logged->sentence) : lines_.back();
+  return lines_.empty() ? "" : std::string(sentence_of(lines_.back()));
 }
 
 }  // namespace handcast::supervisor

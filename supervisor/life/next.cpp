@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "supervisor/life/transition.hpp"
@@ -109,6 +111,8 @@ void Transition::became_ready(Life life) {
   life.on_trial = false;
   worker_ = worker::Ready{.life = life, .ready_ns = now_, .quiet_from_ns = now_};
   past_.was_ready = true;
+  if (std::exchange(past_.waits, false))
+    act(action::Warn{fmt::format("{} can start now", rules_.name)});
   want_standby(life);
   act(action::Tell{Notice::ready});
 }
@@ -185,6 +189,8 @@ void Transition::operator()(const event::NotStarted& event) {
 void Transition::died(Exit exit, bool may_start_at_once) {
   using What = Decision::Action;
   const bool on_trial = life_of(worker_)->on_trial;
+  const bool lacks_something = exit.asks_to_retry() && !ready_since(worker_);
+  const bool is_said = std::exchange(past_.waits, lacks_something);
   auto decision =
       decide(std::move(past_.deaths), {now_, ready_since(worker_), exit}, jitter_at(now_));
   past_.deaths = std::move(decision.record);
@@ -200,7 +206,19 @@ void Transition::died(Exit exit, bool may_start_at_once) {
     worker_ = worker::Waiting{.due_ns = now_ + decision.wait_ns,
                               .degraded = decision.action == What::degrade};
   act(action::ReadLastWords{});
-  warn_of_death(exit, decision);
+  const auto* life = life_of(worker_);
+  const bool has_standby = life && life->origin == Origin::promoted;
+  if (!lacks_something || has_standby)
+    warn_of_death(exit, decision);
+  else if (!is_said)
+    warn_of_wait();
+}
+
+void Transition::warn_of_wait() {
+  act(action::Warn{
+      fmt::format("{0} cannot start, and is tried again until it can, at least every "
+                  "{1:g} s; `handcast devices` lists what is attached",
+                  rules_.name, std::ceil((1 + kMostJitter) * ns_to_seconds(kLongestWait_ns)))});
 }
 
 /// A replacement, which may have other settings, still takes over.

@@ -50,6 +50,7 @@ void Service::handle(const Event& event) { handle(event, launch_.now()); }
 void Service::handle(const Event& event, std::int64_t now) {
   auto [state, actions] = next(std::move(state_), event, now, rules());
   state_ = std::move(state);
+  log_.leave_out_known(state_.past.waits);
   if (!actions.empty()) ++revision_;
   std::vector<Event> caused;
   for (const auto& action : actions)

@@ -126,6 +126,9 @@ struct Past {
   std::optional<std::int64_t> first_start_ns{};  ///< when it was first started; empty: never
   int restarts = 0;                              ///< number of restarts after a death
   bool was_ready = false;                        ///< a worker has been ready
+  /// The last worker ended with exit 111 before it was ready: something that it needs, as a device,
+  /// is missing. That was said, and is not said again before it can start.
+  bool waits = false;
 };
 
 /// A standby that takes over from a worker that works: for new settings, or because a person asked

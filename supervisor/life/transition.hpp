@@ -60,6 +60,7 @@ class Transition {
   void died(Exit exit, bool may_start_at_once);
   void give_up(Exit exit, const Worker& end, Notice notice);
   void warn_of_death(Exit exit, const Decision& decision);
+  void warn_of_wait();
   void kill_worker(std::string why);
   void tick(const worker::Waiting& waiting, const event::Tick& event);
   void tick(const worker::Starting& starting, const event::Tick& event);

@@ -12,6 +12,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
@@ -200,7 +201,8 @@ void give_rig(const LiveRig& rig, const Reply& reply) {
 std::string no_service(const LiveRig& rig, const std::string& name) {
   std::vector<std::string> names;
   for (const auto& each : rig.services.all()) names.push_back(each->spec().name);
-  return fmt::format("rig '{}' has no service '{}'; it has: {}", rig.name, name, join(names, ", "));
+  return fmt::format("rig '{}' has no service {}; it has: {}", rig.name, quote(name),
+                     join(names, ", "));
 }
 
 }  // namespace

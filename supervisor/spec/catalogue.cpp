@@ -8,6 +8,7 @@
 #include "config/settings/files.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -46,7 +47,9 @@ Catalogue read_catalogue(const std::filesystem::path& folder) {
   Catalogue catalogue;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() != ".json") continue;
+    // "._camera.json" is what macOS leaves beside a file on a disk of another kind.
+    if (entry.path().extension() != ".json" || entry.path().filename().string().starts_with('.'))
+      continue;
     auto description = read_description(entry.path());
     if (description)
       catalogue.emplace(description->name, std::move(*description));
@@ -67,8 +70,8 @@ Result<void> check_backend(const Catalogue& catalogue, const std::string& servic
   if (backends.empty()) return fail(Errc::bad_config, service + " has no back ends to choose from");
   if (std::ranges::find(backends, backend, &daemon::BackendDescription::name) != backends.end())
     return {};
-  return fail(Errc::bad_config, fmt::format("{} has no back end '{}'; it has: {}", service, backend,
-                                            join(names_of(backends), ", ")));
+  return fail(Errc::bad_config, fmt::format("{} has no back end {}; it has: {}", service,
+                                            quote(backend), join(names_of(backends), ", ")));
 }
 
 bool is_exclusive(const Catalogue& catalogue, const std::string& service,

@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "config/settings/settings.hpp"
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/join.hpp"
+#include "supervisor/spec/service_spec.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -94,6 +98,78 @@ std::vector<std::string> backends_in(std::string_view service, const config::Lis
   return names;
 }
 
+/// Whom a rig has, and what they read.
+class Readers {
+ public:
+  Readers(const config::Rig& rig, const config::Listing& listing, const Catalogue& catalogue)
+      : rig_(rig), catalogue_(catalogue) {
+    for (const auto& [service, description] : catalogue)
+      chosen_[service] = backends_in(service, listing);
+    for (const auto& service : services_of(rig, catalogue)) active_.insert(service.name);
+  }
+
+  /// Why nobody reads a setting; "" if somebody does.
+  std::string why_idle(std::string_view path) const {
+    for (const auto& [service, description] : catalogue_) {
+      if (!path.starts_with(service + ".")) continue;
+      if (path == service + ".backend" || path == service + ".enabled") return {};
+      if (!active_.contains(service)) return why_absent(service);
+      if (is_read_by_another(path, service)) return {};
+      if (is_within(path, "pose.handover") && rig_.pose.second.empty())
+        return "pose.second is empty";
+      if (is_of_another_backend(path, description))
+        return fmt::format("{}.backend is \"{}\"", service, backend_of(service, rig_));
+    }
+    return {};
+  }
+
+  /// The service that a setting belongs to.
+  std::string service_of(std::string_view path) const {
+    return std::string(path.substr(0, path.find('.')));
+  }
+
+ private:
+  bool is_chosen(const std::string& service, const std::string& backend) const {
+    const auto& names = chosen_.at(service);
+    return std::ranges::find(names, backend) != names.end();
+  }
+
+  std::string why_absent(const std::string& service) const {
+    if (service == "observer") return "observer.enabled is false";
+    if (service == "landmarks2") return "the rig has no second camera";
+    return fmt::format("{}.backend is \"none\"", service);
+  }
+
+  /// Whether it is what one back end of the service reads, and not one that is chosen.
+  bool is_of_another_backend(std::string_view path,
+                             const daemon::ServiceDescription& description) const {
+    bool is_anothers = false;
+    for (const auto& backend : description.backends) {
+      const auto own_section = fmt::format("{}.{}", description.name, backend.name);
+      const bool reads = is_within(path, own_section) || is_in(path, backend.settings);
+      if (reads && is_chosen(description.name, backend.name)) return false;
+      is_anothers = is_anothers || reads;
+    }
+    return is_anothers;
+  }
+
+  bool is_read_by_another(std::string_view path, const std::string& than) const {
+    return std::ranges::any_of(active_, [&](const std::string& service) {
+      const auto found = catalogue_.find(service);
+      if (service == than || found == catalogue_.end()) return false;
+      return is_in(path, found->second.settings) ||
+             std::ranges::any_of(found->second.backends, [&](const auto& backend) {
+               return is_chosen(service, backend.name) && is_in(path, backend.settings);
+             });
+    });
+  }
+
+  const config::Rig& rig_;
+  const Catalogue& catalogue_;
+  std::map<std::string, Paths> chosen_;  ///< by service
+  std::set<std::string> active_;         ///< services of the rig
+};
+
 }  // namespace
 
 std::string fingerprint_of(std::string_view service, const config::Rig& rig,
@@ -123,6 +199,34 @@ std::string backend_of(std::string_view service, const config::Rig& rig) {
 config::Rig with_backend(config::Rig rig, std::string_view service, const std::string& backend) {
   if (auto* asked = backend_in(service, config::list_settings(rig))) *asked = backend;
   return rig;
+}
+
+std::vector<std::string> idle_settings(const config::Rig& rig, const Catalogue& catalogue,
+                                       const std::vector<std::string>& settings) {
+  auto copy = rig;
+  config::Rig usual;
+  const auto listing = config::list_settings(copy), defaults = config::list_settings(usual);
+  const Readers readers(rig, listing, catalogue);
+  const auto is_tried = [&](const std::string& service) {
+    return std::ranges::any_of(settings, [&](const std::string& assignment) {
+      return assignment.starts_with(service + ".backend=");
+    });
+  };
+  std::map<std::string, std::vector<std::string>> idle;  // by reason
+  for (const auto& section : listing)
+    for (const auto& setting : section.settings) {
+      if (config::print_value(setting) ==
+          config::print_value(*config::find_setting(defaults, setting.path)))
+        continue;
+      const auto why = readers.why_idle(setting.path);
+      if (!why.empty() && !is_tried(readers.service_of(setting.path)))
+        idle[why].push_back(setting.path);
+    }
+  std::vector<std::string> sentences;
+  for (const auto& [why, paths] : idle)
+    sentences.push_back(fmt::format("{} {} no effect, because {}", join(paths, ", "),
+                                    paths.size() == 1 ? "has" : "have", why));
+  return sentences;
 }
 
 }  // namespace handcast::supervisor

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "ipc/base/quote.hpp"
+
 namespace handcast::supervisor {
 namespace {
 
@@ -106,7 +108,7 @@ Result<SavedRig> parse_saved(const std::string& text, const std::string& name) {
     if (const auto problem = problem_of(rig, name); !problem.empty()) return invalid(problem);
     return rig;
   } catch (const json::exception& error) {
-    return invalid(error.what());
+    return invalid(shown_line(error.what(), 200));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <map>
 
 #include "tests/config/every_setting.hpp"
@@ -11,6 +12,7 @@
 namespace handcast::config {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -126,9 +128,37 @@ TEST(Rig, WhatIsNotAFiniteNumberIsRefused) {
 
 TEST(Rig, AFileThatIsNotTomlSaysLineAndColumn) {
   EXPECT_THAT(faults_of("[camera]\nrate_hz = = 5\n"),
-              ElementsAre(HasSubstr("/rigs/test.toml:2:11: not TOML: ")));
+              ElementsAre("/rigs/test.toml:2:11: between a name and its value there is one =",
+                          "    rate_hz = = 5", "              ^"));
   EXPECT_THAT(faults_of("[camera]\nrate_hz = 5\nrate_hz = 6\n"),
-              ElementsAre(HasSubstr("/rigs/test.toml:3:")));
+              ElementsAre(HasSubstr("/rigs/test.toml:3:1: rate_hz is set already, at line 2"),
+                          "    rate_hz = 6", "    ^"));
+}
+
+TEST(Rig, ANumberWithAUnitOrInQuotesIsToldHowToWriteIt) {
+  EXPECT_THAT(faults_of("camera.rate_hz = '60'\ncamera.exposure_ms = \"1,5\"\n"
+                        "projector.brightness = '50%'\n"),
+              ElementsAre(HasSubstr("not text; write 60, without quotes"),
+                          HasSubstr("not text; write 1.5, with a decimal point"),
+                          HasSubstr("not text; write 0.5: a share is a number")));
+  EXPECT_THAT(faults_of("", {"camera.rate_hz=60,5"}),
+              ElementsAre("--set camera.rate_hz=60,5: must be a number, 1..2000 Hz; write 60.5, "
+                          "with a decimal point"));
+  EXPECT_THAT(faults_of("", {"camera.rate_hz=60 Hz"}),
+              ElementsAre(HasSubstr("write the number alone, without 'Hz'")));
+}
+
+TEST(Rig, NoFaultPrintsTheFile) {
+  const std::string much(838'000, 'A');
+  for (const auto& toml : {"name = '" + much + "'", "cascade.fill.method = '" + much + "'",
+                           much + " = 1", "camera." + much + " = 1", "hand.left = '~" + much + "'",
+                           "camera.rate_hz = '" + much + "'"})
+    EXPECT_LT(faults_of(toml).at(0).size(), 600u) << toml.substr(0, 30);
+  EXPECT_LT(faults_of("", {much}).at(0).size(), 600u);
+  EXPECT_LT(faults_of("", {much + "=1"}).at(0).size(), 600u);
+  EXPECT_THAT(faults_of("\"a\\u001b[2J\" = 1\ncascade.fill.method = \"a\\nb\"\n"),
+              ElementsAre(HasSubstr("a\\x1b[2J: there is no such setting"),
+                          HasSubstr("'a\\nb' is not one of")));
 }
 
 TEST(Rig, BonesMustBeCalledShortBeforeTheyAreCalledLong) {
@@ -189,7 +219,8 @@ TEST(Rig, ANameThatNoRigCanHaveIsRefused) {
 TEST(Rig, AnAssignmentIsOneLine) {
   EXPECT_THAT(
       faults_of("", {"camera.rate_hz=5\ncamera.exposure_ms=1"}),
-      ElementsAre(HasSubstr("camera.rate_hz=5"), HasSubstr("must not contain a line break")));
+      ElementsAre(
+          "--set camera.rate_hz=5\\x0acamera.exposure_ms=1: must not contain a line break"));
   EXPECT_THAT(faults_of("", {"content.left=a\rb"}),
               ElementsAre(HasSubstr("must not contain a line break")));
 }
@@ -227,6 +258,42 @@ TEST(Paths, OfAFileAreFoundFromAFolderThatWasDeleted) {
   const auto rig = parse_rig("calibration = 'c.toml'\n", kFile, {"hand.left=hand.glb"});
   ASSERT_TRUE(rig) << rig.error().what;
   EXPECT_EQ(rig->calibration, "/rigs/c.toml");
+}
+
+TEST(Paths, ATildeIsTheHomeFolderInEverySettingThatNamesAFile) {
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  if (home.empty()) GTEST_SKIP() << "HOME is not set";
+  Rig names;
+  int checked = 0;
+  for (const auto& section : list_settings(names))
+    for (const auto& setting : section.settings) {
+      if (!names_a_file(setting.path)) continue;
+      ++checked;
+      for (const bool in_file : {true, false}) {
+        auto rig =
+            in_file ? rig_of(setting.path + " = '~/a.b'") : rig_of("", {setting.path + "=~/a.b"});
+        EXPECT_EQ(*std::get<std::string*>(find_setting(list_settings(rig), setting.path)->target),
+                  home + "/a.b")
+            << setting.path;
+      }
+    }
+  EXPECT_GT(checked, 15);
+  EXPECT_THAT(faults_of("hand.left = '~no-such-user/a.glb'"),
+              ElementsAre(AllOf(HasSubstr("test.toml: hand.left: "),
+                                HasSubstr("there is no user 'no-such-user'"))));
+}
+
+TEST(Paths, ThoseOfAnotherProgramAreNamed) {
+  EXPECT_THAT(faults_of("content.left = '$HOME/a.png'\n"),
+              ElementsAre(HasSubstr("variables are not replaced")));
+  EXPECT_THAT(faults_of("content.left = 'file:///a.png'\n"),
+              ElementsAre(HasSubstr("write the path alone")));
+  EXPECT_THAT(faults_of("content.left = 'C:\\a.png'\n"),
+              ElementsAre(HasSubstr("a path of Windows")));
+  EXPECT_THAT(faults_of("content.left = \"C:\\new\\table.png\"\n"),
+              ElementsAre(HasSubstr("are escapes; write single ones")));
+  EXPECT_THAT(faults_of("", {"content.left=$HOME/a.png"}),
+              ElementsAre(HasSubstr("--set: content.left: ")));
 }
 
 TEST(Paths, BuiltinAndEmptyStayAsTheyAre) {

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::calib {
 namespace {
@@ -39,9 +40,9 @@ Result<Board> parse_board(std::string_view name) {
   if (word == kWords.end() || !take_number(rest, board.columns, 'x') ||
       !take_number(rest, board.rows, ':') || !take_number(rest, board.square_mm, 0))
     return fail(Errc::bad_config,
-                fmt::format("'{}' is not a board like charuco:11x8:20 (kind, columns x rows, size "
+                fmt::format("{} is not a board like charuco:11x8:20 (kind, columns x rows, size "
                             "of a square in mm); the kinds are {}",
-                            name, join(kWords, ", ")));
+                            quote(name), join(kWords, ", ")));
   board.kind = static_cast<BoardKind>(word - kWords.begin());
   return check_board(board).map([&] { return board; });
 }

@@ -11,6 +11,7 @@
 #include <array>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/unique_fd.hpp"
 
 namespace handcast::camera::aravis {
@@ -99,8 +100,8 @@ Result<Device> find_device(const std::string& name) {
     std::erase_if(devices, [&](const Device& device) { return !is_called(device, name); });
   if (devices.size() == 1) return devices.front();
   if (devices.empty())
-    return fail(Errc::unavailable,
-                fmt::format("there is no camera '{}', but {}", name, describe(list_devices())));
+    return fail(Errc::unavailable, fmt::format("there is no camera {}, but {}", quote(name),
+                                               describe(list_devices())));
   return fail(Errc::bad_config,
               fmt::format("several cameras are attached; set aravis.device to the serial "
                           "number of one: {}",

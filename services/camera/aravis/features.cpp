@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::camera::aravis {
 namespace {
@@ -82,7 +83,7 @@ Result<void> set_feature(ArvCamera* camera, const std::string& assignment) {
   const auto name = assignment.substr(0, equals);
   const auto text = equals == assignment.npos ? "" : assignment.substr(equals + 1);
   auto* node = arv_device_get_feature(arv_camera_get_device(camera), name.c_str());
-  if (!node) return fail(Errc::bad_config, fmt::format("the camera has no feature '{}'", name));
+  if (!node) return fail(Errc::bad_config, "the camera has no feature " + quote(name));
   if (equals == assignment.npos && !ARV_IS_GC_COMMAND(node))
     return fail(Errc::bad_config, fmt::format("{}: write {}=VALUE", name, name));
   auto set = set_by_kind(camera, node, name, text);

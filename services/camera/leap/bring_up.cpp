@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "ipc/base/quote.hpp"
 #include "services/camera/leap/shipped_files.hpp"
 
 namespace handcast::camera::leap {
@@ -42,7 +43,7 @@ Result<unsigned> number(std::string_view word, unsigned most, int base = 16) {
       std::from_chars(digits.data(), digits.data() + digits.size(), value, base);
   if (fault == std::errc() && end == digits.data() + digits.size() && value <= most) return value;
   const auto largest = base == 16 ? fmt::format("{:x}", most) : fmt::format("{}", most);
-  return fail(Errc::bad_config, fmt::format("'{}' is not a {} number from 0 to {}", word,
+  return fail(Errc::bad_config, fmt::format("{} is not a {} number from 0 to {}", quote(word),
                                             base == 16 ? "hexadecimal" : "decimal", largest));
 }
 
@@ -110,8 +111,7 @@ Result<void> read_line(const Words& words, int line, std::int64_t& pause_ns,
                     : verb == "set"  ? set_of
                                      : nullptr;
   if (!read)
-    return fail(Errc::bad_config,
-                fmt::format("'{}' is no step; there are: write, read, set, pause", verb));
+    return fail(Errc::bad_config, quote(verb) + " is no step; there are: write, read, set, pause");
   const auto transfer = read(words);
   if (!transfer) return tl::make_unexpected(transfer.error());
   steps.push_back({pause_ns, *transfer, line});

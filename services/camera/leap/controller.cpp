@@ -8,6 +8,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 #include "services/camera/leap/lens_fit.hpp"
 
 namespace handcast::camera::leap {
@@ -48,7 +49,7 @@ Result<Controller> open_by_serial(const std::string& wanted,
                          ? fmt::format("{} (port {})", controller->serial, port)
                          : fmt::format("port {}", port));
   }
-  return fail(Errc::unavailable, fmt::format("no controller '{}'; there are: {}{}", wanted,
+  return fail(Errc::unavailable, fmt::format("no controller {}; there are: {}{}", quote(wanted),
                                              join(others, ", "), why ? "; " + why->what : ""));
 }
 

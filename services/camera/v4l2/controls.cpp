@@ -9,6 +9,7 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::camera::v4l2 {
 namespace {
@@ -82,8 +83,8 @@ std::string range_of(const Control& control) {
 
 Result<std::int64_t> value_for(const Control& control, std::string_view text) {
   if (const auto value = meant_by(control, text)) return *value;
-  return fail(Errc::bad_config, fmt::format("the control {} cannot be '{}'; it accepts {}",
-                                            control.name, text, range_of(control)));
+  return fail(Errc::bad_config, fmt::format("the control {} cannot be {}; it accepts {}",
+                                            control.name, quote(text), range_of(control)));
 }
 
 std::int64_t on_step(const Control& control, std::int64_t value) {
@@ -198,7 +199,7 @@ Result<Control> named(const Device& device, std::string_view name) {
   names.reserve(controls.size());
   for (const auto& control : controls) names.push_back(control.name);
   return fail(Errc::bad_config,
-              fmt::format("{} has no control '{}'; {}", describe(device.identity), name,
+              fmt::format("{} has no control {}; {}", describe(device.identity), quote(name),
                           names.empty() ? "it has none" : "it has " + join(names, ", ")));
 }
 
@@ -206,7 +207,7 @@ Result<void> set(const Device& device, const std::string& assignment) {
   const auto equals = assignment.find('=');
   if (equals == std::string::npos)
     return fail(Errc::bad_config,
-                fmt::format("v4l2.controls: '{}' is not of the form name=value", assignment));
+                "v4l2.controls: " + quote(assignment) + " is not of the form name=value");
   const auto control = named(device, std::string_view(assignment).substr(0, equals));
   if (!control) return tl::make_unexpected(control.error());
   const auto value = value_for(*control, std::string_view(assignment).substr(equals + 1));

@@ -15,6 +15,7 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::camera::v4l2 {
 namespace {
@@ -56,7 +57,7 @@ Error why_not_opened(const std::string& path, int number) {
     case ENOENT:
     case ENXIO:
     case ENODEV:
-      return {Errc::unavailable, fmt::format("there is no camera '{}'", path)};
+      return {Errc::unavailable, "there is no camera " + quote(path)};
     case EBUSY:
       return {
           Errc::unavailable,
@@ -183,13 +184,13 @@ Error refusal(const Search& found, const std::string& wanted) {
     return {Errc::bad_config,
             fmt::format("{}; {}; {}",
                         wanted.empty() ? "several cameras are attached"
-                                       : fmt::format("several cameras are called '{}'", wanted),
+                                       : "several cameras are called " + quote(wanted),
                         list_of(found), kRemedy)};
   if (found.listed.empty() && found.refused) return *found.refused;
   if (wanted.empty())
     return {Errc::unavailable, "no camera is attached (there is no /dev/videoN that captures)"};
   return {Errc::unavailable,
-          fmt::format("there is no camera '{}'; {}; {}", wanted, list_of(found), kRemedy)};
+          fmt::format("there is no camera {}; {}; {}", quote(wanted), list_of(found), kRemedy)};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "services/lab/simulate/run.hpp"
 
@@ -13,11 +14,11 @@ static int run_verb(int argc, char** argv) {
   if (const auto code = answered("handcast simulate", text)) return *code;
   const auto fault = simulate::run(*options);
   if (!fault) {
-    fmt::print(stderr, "handcast simulate: {}\n", fault.error().what);
+    fmt::print(stderr, "handcast simulate: {}\n", printable(fault.error().what));
     return exit_code_of(fault.error());
   }
   if (fault->empty()) return kExitDone;
-  fmt::print(stderr, "handcast simulate: {}\n", *fault);
+  fmt::print(stderr, "handcast simulate: {}\n", printable(*fault));
   return kExitBadResult;
 }
 

@@ -8,6 +8,7 @@
 
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
 #include "services/lab/sweep/columns.hpp"
@@ -50,7 +51,7 @@ void stop_on_signals() {
 }
 
 int complain(const Error& error) {
-  fmt::print(stderr, "handcast sweep: {}\n", error.what);
+  fmt::print(stderr, "handcast sweep: {}\n", printable(error.what));
   return exit_code_of(error);
 }
 

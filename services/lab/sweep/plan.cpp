@@ -13,6 +13,7 @@
 #include "config/settings/load.hpp"
 #include "config/settings/quoted.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::sweep {
 
@@ -186,7 +187,8 @@ class Reader {
     const auto document = nested(path, value);
     config::apply_document(document, file_.string(), listing_, faults_);
     const auto text = print(value);
-    const bool is_path = config::is_path(path, text);
+    // A path in the home folder is absolute as it is: the rig's reader expands it.
+    const bool is_path = config::is_path(path, text) && !text.starts_with('~');
     return {text, is_path ? (folder_ / text).lexically_normal().string() : text, value.line};
   }
 
@@ -258,8 +260,7 @@ class Reader {
       }
       auto read = variant(element, head.rig, plan.variants);
       if (std::ranges::find(plan.variants, read.name, &Variant::name) != plan.variants.end())
-        complain(element.line, "variant.name",
-                 fmt::format("two variants are called '{}'", read.name));
+        complain(element.line, "variant.name", "two variants are called " + quote(read.name));
       plan.variants.push_back(std::move(read));
     }
   }
@@ -280,8 +281,7 @@ class Reader {
     for (const auto& name : head.from) {
       const auto base = std::ranges::find(above, name, &Variant::name);
       if (base == above.end()) {
-        complain(element.line, "variant.from",
-                 fmt::format("no variant above is called '{}'", name));
+        complain(element.line, "variant.from", "no variant above is called " + quote(name));
         continue;
       }
       if (head.rig.empty() && name == head.from.front()) read.rig_file = base->rig_file;

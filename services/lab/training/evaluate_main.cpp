@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/command_line.hpp"
+#include "ipc/base/log.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
@@ -191,7 +192,7 @@ int main(int argc, char** argv) try {
     done = run_motion(*models, motions[i], count, i + 1, mesh);
   for (std::size_t i = 0; done && i < pictures.size(); ++i)
     done = run_picture(*models, pictures[i], drawings);
-  if (!done) fmt::print(stderr, "handcast-evaluate-landmarks: {}\n", done.error().what);
+  if (!done) fmt::print(stderr, "handcast-evaluate-landmarks: {}\n", printable(done.error().what));
   return done ? 0 : 1;
 } catch (const std::exception& problem) {
   std::fprintf(stderr, "handcast-evaluate-landmarks: %s\n", problem.what());

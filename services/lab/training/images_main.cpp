@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "ipc/base/command_line.hpp"
+#include "ipc/base/log.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/lab/training/generator.hpp"
 
@@ -81,10 +82,12 @@ int main(int argc, char** argv) try {
 
   auto generator = Generator::create(people, seed);
   if (!generator)
-    return fmt::print(stderr, "handcast-training-images: {}\n", generator.error().what), 1;
+    return fmt::print(stderr, "handcast-training-images: {}\n", printable(generator.error().what)),
+           1;
   if (preview > 0) {
     const auto written = write_contact_sheet(*generator, preview, picture);
-    if (!written) fmt::print(stderr, "handcast-training-images: {}\n", written.error().what);
+    if (!written)
+      fmt::print(stderr, "handcast-training-images: {}\n", printable(written.error().what));
     return written ? 0 : 1;
   }
   for (std::uint64_t i = first; i < first + count; ++i)

@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
+#include "ipc/base/quote.hpp"
 #include "services/lab/twin/choreography.hpp"
 #include "services/lab/twin/person.hpp"
 
@@ -21,16 +22,16 @@ Result<std::unique_ptr<Motion>> open_motion(const config::Twin& settings,
     auto motion = make_builtin_motion(name, settings, calibration);
     if (!motion)
       return fail(Errc::bad_config,
-                  fmt::format("twin.motion: there is no built-in motion '{}'; choose one of {}",
-                              name, builtin_motion_names()));
+                  fmt::format("twin.motion: there is no built-in motion {}; choose one of {}",
+                              quote(name), builtin_motion_names()));
     return motion;
   }
   if (!std::filesystem::is_directory(settings.motion))
     return fail(
         Errc::bad_config,
-        fmt::format("twin.motion: '{}' is not a folder; a built-in motion is builtin:NAME, with "
+        fmt::format("twin.motion: {} is not a folder; a built-in motion is builtin:NAME, with "
                     "NAME one of {}",
-                    settings.motion, builtin_motion_names()));
+                    quote(settings.motion), builtin_motion_names()));
   const auto recording = recording::read_recording(settings.motion);
   if (!recording) return fail_in("twin.motion", Error{Errc::bad_config, recording.error().what});
   return make_recorded_motion(*recording, settings);

@@ -13,6 +13,7 @@ constexpr int kShrink = 4;
 constexpr std::size_t kMostParts = 2;
 constexpr double kLeastShare = 0.004;  ///< least area of a part, as a share of the image
 constexpr int kLeastEdge = 3;          ///< pixels at the edge of the image that make an arm
+constexpr float kLeastPalm = 0.4f;     ///< radius, as a share of that of the widest place
 // The region of an open hand, in radii of the circle in its palm.
 constexpr float kSide = 5.5f, kTowardsFingers = 0.8f;
 
@@ -37,7 +38,7 @@ glm::vec2 long_axis(std::span<const glm::ivec2> pixels) {
 }  // namespace
 
 std::span<const BrightHand> BrightHands::search(renderer::GreyView image,
-                                                std::span<const Points> known) {
+                                                std::span<const Points> known, int places) {
   found_.clear();
   const auto small = smaller_.shrink(image, {0, 0, image.width, image.height}, kShrink);
   const renderer::Rect all{0, 0, small.width, small.height};
@@ -49,7 +50,7 @@ std::span<const BrightHand> BrightHands::search(renderer::GreyView image,
   runs_.build(bright_.view(), all);
   for (const int root : largest_parts(known)) {
     const Part part = read(root);
-    found_.push_back(around(part, widest_place(part)));
+    for (const Circle& circle : widest_places(part, places)) found_.push_back(around(part, circle));
   }
   return found_;
 }
@@ -91,9 +92,10 @@ BrightHands::Part BrightHands::read(int root) {
   return part;
 }
 
-/// The pixel of the part that is farthest from the dark, by a chamfer distance transform (Borgefors
-/// 1986, weights 3 and 4). Beyond the edge of the image the part is taken to go on.
-BrightHands::Circle BrightHands::widest_place(const Part& part) {
+/// The pixels of the part that are farthest from the dark, by a chamfer distance transform
+/// (Borgefors 1986, weights 3 and 4), each beside the circles of those before. Beyond the edge of
+/// the image the part is taken to go on.
+std::vector<BrightHands::Circle> BrightHands::widest_places(const Part& part, int most) {
   constexpr std::uint16_t kFar = 60000;
   inside_ = renderer::Image<std::uint16_t>(bright_.width(), bright_.height());
   for (const glm::ivec2 pixel : part.pixels) inside_.at(pixel.x, pixel.y) = kFar;
@@ -107,13 +109,22 @@ BrightHands::Circle BrightHands::widest_place(const Part& part) {
     at_most(x - step, y - step, 4), at_most(x + step, y - step, 4);
   };
   for (const glm::ivec2 pixel : part.pixels) relax(pixel.x, pixel.y, 1);
-  Circle widest{glm::vec2(0), 0};
-  for (auto pixel = part.pixels.rbegin(); pixel != part.pixels.rend(); ++pixel) {
+  for (auto pixel = part.pixels.rbegin(); pixel != part.pixels.rend(); ++pixel)
     relax(pixel->x, pixel->y, -1);
-    const float radius = static_cast<float>(inside_.at(pixel->x, pixel->y)) / 3;
-    if (radius > widest.radius) widest = {glm::vec2(*pixel), radius};
+  std::vector<Circle> circles;
+  while (static_cast<int>(circles.size()) < most) {
+    Circle widest{glm::vec2(0), 0};
+    for (auto pixel = part.pixels.rbegin(); pixel != part.pixels.rend(); ++pixel) {
+      const float radius = static_cast<float>(inside_.at(pixel->x, pixel->y)) / 3;
+      const bool is_beside = std::ranges::all_of(circles, [&](const Circle& other) {
+        return glm::distance(glm::vec2(*pixel), other.centre) > other.radius;
+      });
+      if (radius > widest.radius && is_beside) widest = {glm::vec2(*pixel), radius};
+    }
+    if (!circles.empty() && widest.radius < kLeastPalm * circles.front().radius) break;
+    circles.push_back(widest);
   }
-  return widest;
+  return circles;
 }
 
 BrightHand BrightHands::around(const Part& part, const Circle& palm) const {

@@ -217,7 +217,7 @@ Result<std::vector<Region>> HandFinder::search_bright(renderer::GreyView image) 
   const std::int64_t begin_ns = now_ns();
   std::vector<Points> known;
   for (const auto& hand : found_) known.push_back(hand.points_px);
-  const auto bright = bright_hands_.search(image, known);
+  const auto bright = bright_hands_.search(image, known, places_);
   times_.palm_ns = now_ns() - begin_ns;
   std::vector<Region> regions;
   for (const BrightHand& hand : bright) {

@@ -32,9 +32,10 @@ class BrightHands {
  public:
   /// At most two, the larger first. Parts on which one of `known` (the points of a hand, image px)
   /// lies are left out. The threshold between dark and bright is that of the mask
-  /// (choose_threshold()); an image without two classes has no bright part. Valid until the next
-  /// call.
-  std::span<const BrightHand> search(renderer::GreyView image, std::span<const Points> known);
+  /// (choose_threshold()); an image without two classes has no bright part. `places`: of a part,
+  /// the widest first, because a sleeve may be wider than the palm. Valid until the next call.
+  std::span<const BrightHand> search(renderer::GreyView image, std::span<const Points> known,
+                                     int places = 1);
 
  private:
   struct Part {
@@ -50,7 +51,7 @@ class BrightHands {
 
   std::vector<int> largest_parts(std::span<const Points> known);
   Part read(int root);
-  Circle widest_place(const Part& part);
+  std::vector<Circle> widest_places(const Part& part, int most);
   BrightHand around(const Part& part, const Circle& palm) const;
 
   BoxFilter smaller_;
@@ -139,9 +140,13 @@ class HandFinder {
     of_landmarks,  ///< Only images tell where a hand is at first, and which hand it is.
   };
 
-  /// `most_hands`: 1 or 2.
-  HandFinder(OpenedModel model, int most_hands, Poses poses = Poses::of_a_tracker)
-      : model_(std::move(model)), most_hands_(most_hands), lifts_(poses == Poses::of_landmarks) {}
+  /// `most_hands`: 1 or 2. `places`: of each bright part that are searched; each takes up to 16
+  /// runs of the model.
+  HandFinder(OpenedModel model, int most_hands, Poses poses = Poses::of_a_tracker, int places = 1)
+      : model_(std::move(model)),
+        most_hands_(most_hands),
+        lifts_(poses == Poses::of_landmarks),
+        places_(places) {}
 
   /// The hands in the image, valid until the next call. The side of a hand is the tracker's if the
   /// tracker has a hand there, otherwise the model's. Images must come in the order of their times.
@@ -190,6 +195,7 @@ class HandFinder {
   OpenedModel model_;
   int most_hands_;
   bool lifts_;  ///< poses are made from these landmarks
+  int places_;  ///< of a bright part
   BrightHands bright_hands_;
   HandTracks tracks_;
   SteadyHints steady_hints_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::dlp {
 namespace {
@@ -48,9 +49,8 @@ Result<HidInfo> choose_device(const std::string& wanted) {
     return fail(
         Errc::unavailable,
         "no DLPC350 or DLPC900 is attached; connect the projector's USB cable and switch it on");
-  return fail(Errc::unavailable,
-              fmt::format("dlp.device: there is no controller '{}'; attached: {}", wanted,
-                          list_of(attached)));
+  return fail(Errc::unavailable, fmt::format("dlp.device: there is no controller {}; attached: {}",
+                                             quote(wanted), list_of(attached)));
 }
 
 }  // namespace handcast::dlp

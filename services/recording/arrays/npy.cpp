@@ -17,6 +17,7 @@
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/output_file.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::recording {
 namespace {
@@ -98,7 +99,7 @@ Result<Layout> parse_layout(const path& file, std::string_view bytes,
     return damaged(file, "the header has no plain number type");
   layout.type = type.substr(1, 3);
   if (std::ranges::find(types, layout.type) == types.end())
-    return damaged(file, fmt::format("the array holds '{}'; '{}' {} supported", layout.type,
+    return damaged(file, fmt::format("the array holds {}; '{}' {} supported", quote(layout.type),
                                      join(types, "', '"), types.size() > 1 ? "are" : "is"));
   if (!value_of(header, "fortran_order").starts_with("False"))
     return damaged(file, "the array is not in C order");

@@ -7,6 +7,7 @@
 
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/tools/detect/run.hpp"
@@ -15,7 +16,8 @@ namespace handcast::detect {
 namespace {
 
 const char* const kFooter =
-    R"(Each picture is treated as the first image of a stream: a hand is searched at the place of --joints, otherwise at the places that the palm network finds.
+    R"(Each picture is treated as the first image of a stream: a hand is searched at the place of --joints, otherwise at the places that the palm network finds, or, without its file, in the bright parts, as a hand is one in infrared light.
+Exit 1 if no picture has a hand; a sentence says why.
 Points are pixels of the picture, (0, 0) is the centre of the upper left one; they are as the network defines them, with the lens's distortion.
 --out draws bones and landmarks, the square that the network was given (with a thick upper edge) and the tracker's joints as crosses.)";
 
@@ -27,13 +29,13 @@ std::string backend_help() {
 }
 
 int detect(const Options& options) {
-  const auto text = run(options);
-  if (!text) {
-    fmt::print(stderr, "handcast detect: {}\n", text.error().what);
-    return exit_code_of(text.error());
+  const auto report = run(options);
+  if (!report) {
+    fmt::print(stderr, "handcast detect: {}\n", printable(report.error().what));
+    return exit_code_of(report.error());
   }
-  fmt::print("{}", *text);
-  return kExitDone;
+  fmt::print("{}", report->text);
+  return report->has_hand ? kExitDone : kExitBadResult;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
@@ -52,8 +53,26 @@ nlohmann::json json_of(const landmarks::FoundHand& hand) {
   return {{"side", name_of(hand.side)}, {"presence", hand.presence}, {"points_px", points}};
 }
 
+/// Why there is no hand in a picture, with a remedy; "" if there is one.
+std::string why_none(const Result& result, bool has_joints) {
+  if (!result.hands.empty()) return {};
+  const auto& times = result.times;
+  if (has_joints)
+    return "the network sees no hand where --joints has it; do they belong to this picture, and is "
+           "--side "
+           "that of its hand?";
+  if (times.model_runs > 0)
+    return "the network takes none of the places that were searched for a hand; a whole hand with "
+           "its fingers apart is found best, and --joints tells where it is";
+  return times.palm_runs > 0
+             ? "the palm network finds no palm; --joints tells where the hand is"
+             : "no part of it is bright before a dark background, as a hand is in infrared light; "
+               "scripts/get-models fetches the palm network, which needs neither, and --joints "
+               "tells where the hand is";
+}
+
 /// One line for the picture; for each hand one line and a table of its points.
-std::string print_text(const Result& result) {
+std::string print_text(const Result& result, bool has_joints) {
   const auto& times = result.times;
   std::string text =
       fmt::format("{}: {} hand{}, {:.2f} ms (crop {:.2f}, network {:.2f}{})\n",
@@ -63,12 +82,13 @@ std::string print_text(const Result& result) {
   for (const auto& hand : result.hands)
     text += fmt::format("  {} hand, presence {:.3f}; px from palm to tip:\n{}", name_of(hand.side),
                         hand.presence, table_of(hand.points_px));
+  if (const auto why = why_none(result, has_joints); !why.empty()) text += "  " + why + '\n';
   return text;
 }
 
 /// JSON of all pictures:
-/// {"images":[{"image","ms":{"all","crop","network","palm"},"hands":[{"side","presence","points_px":[[x,y],...]}]}]}
-std::string print_json(const std::vector<Result>& results) {
+/// {"images":[{"image","ms":{"all","crop","network","palm"},"hands":[{"side","presence","points_px":[[x,y],...]}],"why_none"}]}
+std::string print_json(const std::vector<Result>& results, bool has_joints) {
   auto images = nlohmann::json::array();
   for (const auto& result : results) {
     auto hands = nlohmann::json::array();
@@ -80,7 +100,8 @@ std::string print_json(const std::vector<Result>& results) {
                         {"crop", ns_to_ms(times.crop_ns)},
                         {"network", ns_to_ms(times.network_ns)},
                         {"palm", ns_to_ms(times.palm_ns)}}},
-                      {"hands", hands}});
+                      {"hands", hands},
+                      {"why_none", why_none(result, has_joints)}});
   }
   return nlohmann::json{{"images", images}}.dump(1, ' ', false,
                                                  nlohmann::json::error_handler_t::replace) +
@@ -174,13 +195,13 @@ handcast::Result<landmarks::OpenedModel> open_model(const Options& options) {
   if (mediapipe || !options.models.empty()) return mediapipe;
   if (!options.quiet)
     fmt::print(stderr, "handcast detect: with handcast's own network, because {}\n",
-               mediapipe.error().what);
+               printable(mediapipe.error().what));
   return landmarks::open_landmark_model("handcast", settings);
 }
 
 }  // namespace
 
-handcast::Result<std::string> run(const Options& options) {
+handcast::Result<Report> run(const Options& options) {
   if (!options.joints.empty() && options.joints.size() != options.images.size())
     return fail(
         Errc::bad_config,
@@ -191,7 +212,12 @@ handcast::Result<std::string> run(const Options& options) {
   if (!drawings) return tl::make_unexpected(drawings.error());
   auto model = open_model(options);
   if (!model) return tl::make_unexpected(model.error());
-  landmarks::HandFinder finder(std::move(*model), options.hands);
+  // Without a tracker's joints, only the picture tells where a hand is.
+  const bool has_joints = !options.joints.empty();
+  using Poses = landmarks::HandFinder::Poses;
+  constexpr int kPlaces = 6;  // nobody waits for the next image
+  landmarks::HandFinder finder(std::move(*model), options.hands,
+                               has_joints ? Poses::of_a_tracker : Poses::of_landmarks, kPlaces);
   const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
   std::vector<Result> results;
   std::string text;
@@ -202,14 +228,16 @@ handcast::Result<std::string> run(const Options& options) {
     auto result = detect_in(finder, options, i, (*drawings)[i]);
     if (!result) {
       // What was found so far is not lost.
-      if (!results.empty()) fmt::print("{}", options.json ? print_json(results) : text);
+      if (!results.empty()) fmt::print("{}", options.json ? print_json(results, has_joints) : text);
       return fail_in(options.images[i].string(), result.error());
     }
-    if (!options.json) text += print_text(*result);
+    if (!options.json) text += print_text(*result, has_joints);
     results.push_back(std::move(*result));
   }
   if (shows_progress) fmt::print(stderr, "\r\033[K");
-  return options.json ? print_json(results) : text;
+  const bool has_hand =
+      std::ranges::any_of(results, [](const Result& result) { return !result.hands.empty(); });
+  return Report{options.json ? print_json(results, has_joints) : text, has_hand};
 }
 
 }  // namespace handcast::detect

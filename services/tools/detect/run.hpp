@@ -23,8 +23,15 @@ struct Options {
   bool quiet = false;                 ///< print no progress
 };
 
-/// Detects hands in the pictures and draws them; returns the text for standard output. Progress
-/// goes to standard error. Errors: bad_config, bad_data, unavailable.
-handcast::Result<std::string> run(const Options& options);
+/// What was found.
+struct Report {
+  std::string text;       ///< for standard output; of a picture without a hand, it says why
+  bool has_hand = false;  ///< in at least one picture
+};
+
+/// Detects hands in the pictures and draws them. Without joints it searches for them: with
+/// MediaPipe's palm network or, without its file, in the bright parts. Progress goes to standard
+/// error. Errors: bad_config, bad_data, unavailable.
+handcast::Result<Report> run(const Options& options);
 
 }  // namespace handcast::detect

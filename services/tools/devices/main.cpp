@@ -11,6 +11,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/quote.hpp"
 #include "services/tools/devices/attached.hpp"
 
 #ifdef HANDCAST_WITH_LIBUSB
@@ -62,11 +63,10 @@ Result<void> write_leap_calibration(const LeapCalibration& wanted) {
       static_cast<std::size_t>(end) != wanted.size.size() || !is_side(width_px) ||
       !is_side(height_px))
     return fail(Errc::bad_config,
-                fmt::format("'{}' is no size like 640x480, with {} to {} px on a side", wanted.size,
-                            kLeast_px, kMost_px));
+                fmt::format("{} is no size like 640x480, with {} to {} px on a side",
+                            quote(wanted.size), kLeast_px, kMost_px));
   if (wanted.eye != "left" && wanted.eye != "right")
-    return fail(Errc::bad_config,
-                fmt::format("'{}' is no eye; there are left and right", wanted.eye));
+    return fail(Errc::bad_config, quote(wanted.eye) + " is no eye; there are left and right");
   const auto text = camera::leap::calibration_file_from(wanted.device, wanted.eye == "right",
                                                         width_px, height_px);
   if (!text) return tl::make_unexpected(text.error());
@@ -100,7 +100,7 @@ static int run_verb(int argc, char** argv) {
   if (!leap.file.empty()) {
     const auto written = devices::write_leap_calibration(leap);
     if (written) return kExitDone;
-    fmt::print(stderr, "handcast devices: {}\n", written.error().what);
+    fmt::print(stderr, "handcast devices: {}\n", printable(written.error().what));
     return exit_code_of(written.error());
   }
   const auto attached = devices::all_attached();

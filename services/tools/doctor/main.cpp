@@ -8,6 +8,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "services/tools/doctor/devices.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
 #include "services/tools/doctor/rig_file.hpp"
@@ -39,9 +40,10 @@ std::vector<Finding> examine(const Options& options) {
   if (!rig) return findings;
   auto live = examine_live(rig->name, options.seconds);
   const bool is_up = live.has_value();
+  const auto asking = is_up ? Asking::not_now : Asking::now;
   for (auto more :
        {examine_start(options.file, options.settings), examine_machine(*rig),
-        examine_tracker(*rig, is_up ? Asking::not_now : Asking::now), findings_of(std::move(live))})
+        examine_devices(*rig, asking), examine_tracker(*rig, asking), findings_of(std::move(live))})
     std::move(more.begin(), more.end(), std::back_inserter(findings));
   return findings;
 }
@@ -49,8 +51,8 @@ std::vector<Finding> examine(const Options& options) {
 int run_verb(int argc, char** argv) {
   CommandLine line(
       "handcast doctor",
-      "Checks a rig before the show: its file, this computer, and, if the rig is up, what it sees "
-      "and casts. Exit 1 if there is a fault.");
+      "Checks a rig before the show: its file, its devices, this computer, and, if the rig is up, "
+      "what it sees and casts. Exit 1 if there is a fault.");
   Options options;
   line.add("RIG.toml", options.file, "The rig file");
   line.add("--set path=value", options.settings, "A setting that overrides the file's");

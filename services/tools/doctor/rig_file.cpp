@@ -80,12 +80,26 @@ std::vector<Finding> judge_mode(const DisplayMode& mode, const config::Projector
   return findings;
 }
 
+/// A window among others needs no monitor of its own.
+static std::vector<Finding> examine_window_system() {
+#ifdef HANDCAST_WITH_WINDOW
+  if (const auto monitors = renderer::list_monitors(); !monitors)
+    return {{"display", Grade::fault, monitors.error().what,
+             "start it in a desktop session, or choose the back end kms"}};
+  return {{"display", Grade::good, "a window system answers", ""}};
+#else
+  return {{"display", Grade::fault, "this build has no back end 'window'",
+           "`handcast config --check`"}};
+#endif
+}
+
 std::vector<Finding> examine_display(const config::Rig& rig,
                                      const calib::Calibration& calibration) {
   const auto& projector = rig.projector;
-  const bool is_monitor = projector.backend == "window" && projector.window.full_screen;
-  if (!is_monitor && projector.backend != "kms") return {};
-  const auto mode = is_monitor ? mode_of_window(rig) : mode_of_connector(rig, calibration);
+  const bool is_window = projector.backend == "window";
+  if (!is_window && projector.backend != "kms") return {};
+  if (is_window && !projector.window.full_screen) return examine_window_system();
+  const auto mode = is_window ? mode_of_window(rig) : mode_of_connector(rig, calibration);
   if (!mode)
     return {{"display", Grade::fault, mode.error().what,
              "`handcast devices` lists the displays that are there"}};

@@ -69,7 +69,8 @@ std::optional<Answer> ask(std::vector<std::string> words) {
 }  // namespace
 
 std::vector<Finding> judge_check(int exit_code, const std::string& complaints) {
-  if (exit_code == kExitDone) return {{"start", Grade::good, "`handcast up` accepts the rig", ""}};
+  if (exit_code == kExitDone)
+    return {{"start", Grade::good, "`handcast up` accepts the rig's settings and files", ""}};
   std::vector<Finding> findings;
   std::istringstream lines(complaints);
   std::string line;

@@ -73,9 +73,14 @@ std::vector<Finding> openxr(const config::Rig& rig, [[maybe_unused]] Asking aski
 }  // namespace
 
 std::vector<Finding> examine_tracker(const config::Rig& rig, Asking asking, const fs::path& root) {
-  if (rig.pose.backend == "leapc") return {leapc_software(rig, root), leapc_device(root)};
-  if (rig.pose.backend == "openxr") return openxr(rig, asking);
-  return {};
+  std::vector<Finding> findings;
+  for (const auto& backend : {rig.pose.backend, rig.pose.second}) {
+    if (backend == "leapc")
+      findings.insert(findings.end(), {leapc_software(rig, root), leapc_device(root)});
+    if (backend == "openxr")
+      for (auto& finding : openxr(rig, asking)) findings.push_back(std::move(finding));
+  }
+  return findings;
 }
 
 }  // namespace handcast::doctor

@@ -14,9 +14,9 @@ enum class Asking {
   not_now,  ///< the rig is using it
 };
 
-/// Examines the tracker of a rig: whether its software is installed, its device attached, and
-/// whether it answers. No findings for the twin's tracker, recordings, and none. `root`: where /sys
-/// and /usr are, for tests.
+/// Examines the tracker of a rig, and the second one: whether its software is installed, its device
+/// attached, and whether it answers. No findings for the twin's tracker, recordings, and none.
+/// `root`: where /sys and /usr are, for tests.
 std::vector<Finding> examine_tracker(const config::Rig& rig, Asking asking,
                                      const std::filesystem::path& root = "/");
 

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::init {
 namespace {
@@ -154,11 +155,27 @@ Result<std::size_t> find(std::span<const Candidate> candidates, std::string_view
     if (found.size() == 1) return found.front();
     if (!found.empty())
       return fail(Errc::bad_config,
-                  fmt::format("'{}' can be {}", answer, words_of(candidates, found)));
+                  fmt::format("{} can be {}", quote(answer), words_of(candidates, found)));
   }
   const auto all = those(candidates, [](const Candidate&) { return true; });
   return fail(Errc::unavailable,
-              fmt::format("there is no '{}'; there is {}", answer, words_of(candidates, all)));
+              fmt::format("there is no {}; there is {}", quote(answer), words_of(candidates, all)));
+}
+
+std::optional<Candidate> not_attached(std::string_view answer,
+                                      std::span<const std::string_view> backends) {
+  const auto colon = answer.find(':');
+  const std::string backend(answer.substr(0, colon));
+  if (colon == answer.npos || std::ranges::find(backends, backend) == backends.end())
+    return std::nullopt;
+  const std::string name(answer.substr(colon + 1));
+  if (name.empty() || !std::ranges::all_of(name, is_plain)) return std::nullopt;
+  const auto text = name + ", which is not attached now";
+  Candidate later{
+      .word = std::string(answer), .text = text, .backend = backend, .name = name, .device = {}};
+  later.device.name = text;
+  later.device.names = {name};
+  return later;
 }
 
 namespace {

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 #include "ipc/base/rig_name.hpp"
 #include "services/tools/devices/trackers.hpp"
 
@@ -16,17 +18,27 @@ namespace {
 constexpr double kNearest_m = 0.1, kFarthest_m = 10;  // of pose.none.distance_m
 constexpr std::string_view kNone = "none";
 
-/// A question with a list, whose answer is kept in `chosen`.
+/// The back ends whose devices may be attached later.
+constexpr std::array<std::string_view, 2> kCameraBackends{"aravis", "v4l2"},
+    kLightBackends{"window", "kms"};
+
+/// A question with a list, whose answer is kept in `chosen`. A device that is not attached yet is
+/// answered with its back end and name: "v4l2:HD Webcam".
 Question choice(const std::string& flag, const std::string& text,
                 const std::vector<Candidate>& candidates, std::size_t likely, Candidate& chosen) {
   Question question{.flag = flag, .text = text, .options = {}, .preset = candidates[likely].word};
   for (const auto& candidate : candidates)
     question.options.push_back({candidate.word, candidate.text});
-  question.take = [&](const std::string& answer) -> Result<void> {
+  question.take = [&, flag](const std::string& answer) -> Result<void> {
     const auto found = find(candidates, answer);
-    if (!found) return tl::make_unexpected(found.error());
-    chosen = candidates[*found];
-    return {};
+    if (found) return chosen = candidates[*found], Result<void>();
+    const auto backends = flag == "--camera" ? kCameraBackends : kLightBackends;
+    auto later = found.error().code == Errc::unavailable ? not_attached(answer, backends)
+                                                         : std::nullopt;
+    if (later) return chosen = std::move(*later), Result<void>();
+    return fail(found.error().code,
+                fmt::format("{}; {}:NAME or {}:NAME is one that is not attached yet",
+                            found.error().what, backends[0], backends[1]));
   };
   return question;
 }
@@ -61,9 +73,10 @@ std::string why_absent(const std::string& word) {
 Result<void> take_tracker(const std::string& answer, const std::vector<devices::Attached>& attached,
                           Plan& plan) {
   const auto words = tracker_words(attached);
-  if (std::ranges::find(words, answer) == words.end())
-    return fail(Errc::bad_config,
-                fmt::format("'{}' is not {}{}", answer, join(words, " or "), why_absent(answer)));
+  const bool is_later = plan.camera.is_device() && (answer == "leapc" || answer == "openxr");
+  if (std::ranges::find(words, answer) == words.end() && !is_later)
+    return fail(Errc::bad_config, fmt::format("{} is not {}{}", quote(answer), join(words, " or "),
+                                              why_absent(answer)));
   if (answer == "twin" && plan.camera.is_device())
     return fail(Errc::bad_config,
                 "the twin's tracker does not see the hand in front of a real camera; take none");
@@ -73,6 +86,8 @@ Result<void> take_tracker(const std::string& answer, const std::vector<devices::
   plan.tracker = static_cast<Tracker>(std::ranges::find(all, answer) - all.begin());
   const auto* device = tracker_among(attached, answer);
   plan.tracker_name = device ? device->name : "";
+  if (!device && is_later)
+    plan.tracker_name = fmt::format("{}, which is not there now{}", answer, why_absent(answer));
   return {};
 }
 
@@ -112,8 +127,8 @@ Result<void> take_distance(const std::string& answer, Plan& plan) {
   const std::string_view rest(read.ptr, end);
   if (read.ec != std::errc{} || (!rest.empty() && rest != "m" && rest != " m") ||
       !(distance_m >= kNearest_m && distance_m <= kFarthest_m))
-    return fail(Errc::bad_config, fmt::format("'{}' is no number of metres from {} to {}", answer,
-                                              kNearest_m, kFarthest_m));
+    return fail(Errc::bad_config, fmt::format("{} is no number of metres from {} to {}",
+                                              quote(answer), kNearest_m, kFarthest_m));
   plan.distance_m = distance_m;
   return {};
 }
@@ -182,7 +197,7 @@ Question name_question(const Options& options, Plan& plan) {
           .take = [&plan](const std::string& answer) -> Result<void> {
             if (!is_rig_name(answer))
               return fail(Errc::bad_config,
-                          fmt::format("'{}' is no name of a rig; {}", answer, kRigNameRule));
+                          fmt::format("{} is no name of a rig; {}", quote(answer), kRigNameRule));
             plan.name = answer;
             return {};
           }};

@@ -15,9 +15,11 @@ Result<Options> parse(int argc, char** argv) {
   auto& flags = options.flags;
   line.add("[RIG.toml]", options.file, "The file to write");
   line.add("--camera NAME", flags.camera,
-           "A camera, as `handcast devices` lists it, or twin: the digital twin");
+           "A camera, as `handcast devices` lists it, or twin: the digital twin. One that is not "
+           "attached yet: aravis:SERIAL or v4l2:NAME");
   line.add("--output NAME", flags.output,
-           "A display, as `handcast devices` lists it, or file: pictures in a folder, or twin");
+           "A display, as `handcast devices` lists it, or file: pictures in a folder, or twin. One "
+           "that is not attached yet: window:NAME or kms:NAME");
   line.add("--tracker NAME", flags.tracker,
            "none, or one that `handcast devices` lists: leapc, openxr; or twin (with the camera "
            "twin). For two cameras in place of a tracker copy config/rigs/stereo.toml or "

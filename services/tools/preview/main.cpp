@@ -12,6 +12,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "renderer/media/picture.hpp"
@@ -141,7 +142,7 @@ Result<void> show_live(const Options& options) {
 }  // namespace handcast::preview
 
 static int complain(int exit_code, const std::string& sentence) {
-  fmt::print(stderr, "handcast preview: {}\n", sentence);
+  fmt::print(stderr, "handcast preview: {}\n", printable(sentence));
   return exit_code;
 }
 

@@ -4,12 +4,13 @@
 
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "services/tools/record/npy_folder.hpp"
 #include "services/tools/record/recorder.hpp"
 
 static int complain(int exit_code, const std::string& sentence) {
-  fmt::print(stderr, "handcast record: {}\n", sentence);
+  fmt::print(stderr, "handcast record: {}\n", printable(sentence));
   return exit_code;
 }
 

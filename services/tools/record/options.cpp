@@ -8,6 +8,7 @@
 
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::record {
 namespace {
@@ -54,8 +55,8 @@ Result<std::vector<std::string>> choose(const std::vector<std::string>& rings,
   };
   for (const auto& wish : rings)
     if (std::ranges::none_of(there, [&](const auto& name) { return fits(wish, name); }))
-      return fail(Errc::bad_config, fmt::format("--rings: the rig has no ring '{}'; it has: {}",
-                                                wish, join(there, ", ")));
+      return fail(Errc::bad_config, fmt::format("--rings: the rig has no ring {}; it has: {}",
+                                                quote(wish), join(there, ", ")));
   std::vector<std::string> chosen;
   for (const auto& name : there)
     if (rings.empty() ||

@@ -9,6 +9,7 @@
 #include "config/settings/quoted.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "services/tools/template/template.hpp"
 
@@ -20,7 +21,7 @@ const char* const kFooter =
 paint in. A picture may have any size up to 8192 px a side, PNG or JPEG, in the proportions 8:5 of the template.)";
 
 int complain(const Error& error) {
-  fmt::print(stderr, "handcast template: {}\n", error.what);
+  fmt::print(stderr, "handcast template: {}\n", printable(error.what));
   return exit_code_of(error);
 }
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+
 #include "ipc/base/exit_code.hpp"
 
 namespace handcast {
@@ -59,6 +61,23 @@ TEST(CommandLine, AnOptionTakesItsValueInEveryUsualWay) {
               ElementsAre("--shot", "--after", "--times", "--side", "--set", "--quiet"));
 }
 
+TEST(CommandLine, ATildeIsTheHomeFolderAlsoWhereAShellLeavesIt) {
+  const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
+  if (home.empty()) GTEST_SKIP() << "HOME is not set";
+  const auto seen = look({"~/out", "--shot=~/a.png", "~/1.png"});
+  EXPECT_EQ(seen.folder, home + "/out");
+  EXPECT_EQ(seen.shot, home + "/a.png");
+  EXPECT_THAT(seen.pictures, ElementsAre(home + "/1.png"));
+  EXPECT_EQ(look({"~no-such-user/out"}).folder, "~no-such-user/out");
+}
+
+TEST(CommandLine, ALongArgumentIsNotPrintedBack) {
+  for (const auto* option : {"--side", "--after", "--"})
+    EXPECT_LT(look({"out", option + std::string(option[2] ? "=" : "") + std::string(100'000, 'A')})
+                  .answer.size(),
+              400u);
+}
+
 TEST(CommandLine, TheLastValueCountsAndThereAreNoOptionsAfterTwoDashes) {
   EXPECT_EQ(look({"out", "--shot", "a.png", "-s", "b.png"}).shot, "b.png");
   const auto seen = look({"--", "--quiet", "--help"});
@@ -82,9 +101,11 @@ TEST(CommandLine, AWrongValueIsNamedWithWhatIsAccepted) {
     EXPECT_TRUE(answer.ends_with("; `handcast help look`")) << answer;
     return answer.substr(0, answer.rfind(';'));
   };
-  for (const auto* wrong : {"soon", "nan", "inf", "-1", "2s", "0", "3601"})
+  for (const auto* wrong : {"soon", "nan", "inf", "-1", "0", "3601"})
     EXPECT_EQ(refused({"--after", wrong}),
               fmt::format("--after: '{}' is not a number in the range 0.1 to 3600", wrong));
+  EXPECT_THAT(refused({"--after", "2s"}), HasSubstr("; write the number alone, without 's'"));
+  EXPECT_THAT(refused({"--after=2,5"}), HasSubstr("; write 2.5, with a decimal point"));
   EXPECT_EQ(refused({"--times", "2.5"}),
             "--times: '2.5' is not a whole number in the range 1 to 9");
   EXPECT_EQ(refused({"--side", "both"}), "--side: 'both' is not one of left, right");

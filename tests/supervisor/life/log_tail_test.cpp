@@ -62,6 +62,29 @@ TEST(LogTail, AnErrorThatIsRepeatedIsPrintedShortAndKeptWhole) {
   EXPECT_EQ(tail.last(3).front(), "2.000 pose       error   there is no runtime");
 }
 
+TEST(LogTail, OfAServiceThatWaitsWhatWasSaidIsNotSaidAgain) {
+  std::vector<std::string> seen;
+  const auto note = [&](std::string_view line) { seen.emplace_back(line); };
+  LogTail tail;
+  const auto life = [&](const std::string& time) {
+    tail.append(time + " camera     warning priority 50 is not permitted\n", note);
+    tail.append(time + " camera     error   no camera is attached\n", note);
+  };
+  life("1.000");
+  tail.leave_out_known(true);
+  life("2.000");
+  life("3.000");
+  tail.append("4.000 camera     error   it is used by another program\n", note);
+  life("5.000");
+  EXPECT_THAT(seen, ElementsAre("1.000 camera     warning priority 50 is not permitted",
+                                "1.000 camera     error   no camera is attached",
+                                "4.000 camera     error   it is used by another program"));
+  EXPECT_EQ(tail.last_sentence(), "no camera is attached") << "`handcast status` shows the newest";
+  tail.leave_out_known(false);
+  life("6.000");
+  EXPECT_EQ(seen.size(), 5u);
+}
+
 TEST(LogTail, OneThatWritesFasterThanItIsReadIsNotReadForEver) {
   int ends[2];
   ASSERT_EQ(pipe2(ends, O_NONBLOCK), 0);

@@ -172,9 +172,34 @@ TEST(Next, AProcessThatCannotBeHadIsTriedAgainAtTheNextTickNotAtOnce) {
   expect({{kStarting,
            event::NotStarted{{.code = 111}},
            "waiting until 100",
-           {"read last words", "warn: pose died (exit 111); started again after 0 ms"}},
+           {"read last words",
+            "warn: pose cannot start, and is tried again until it can, at least every 7 s; "
+            "`handcast devices` lists what is attached"}},
           {worker::Waiting{.due_ns = s(100)}, event::Tick{}, "starting until 110", {"spawn"}},
           {kWaiting, event::Tick{}, "waiting until 101", kNothing}});
+}
+
+TEST(Next, AMissingDeviceIsSaidOnceAndThatItIsThereOnce) {
+  const Exit missing{.code = 111};
+  Machine machine{.state = {.worker = kStarting}};
+  EXPECT_THAT(machine.at(100, event::Ended{missing}),
+              ElementsAre("spawn", "read last words", HasSubstr("pose cannot start")));
+  for (double time_s = 101; time_s < 200; time_s += 10) {
+    EXPECT_THAT(machine.at(time_s, event::Ended{missing}), ElementsAre("read last words"));
+    EXPECT_THAT(machine.at(time_s + 8, event::Tick{}), ElementsAre("spawn"));
+  }
+  EXPECT_THAT(machine.at(300, event::SaidReady{true}),
+              testing::Contains("warn: pose can start now"));
+  EXPECT_THAT(machine.at(301, event::Ended{missing}),
+              testing::Contains(HasSubstr("pose died (exit 111)")))
+      << "it was ready: that is a death";
+  machine.at(310, event::Tick{});
+  EXPECT_THAT(machine.at(311, event::Ended{missing}),
+              testing::Contains(HasSubstr("pose cannot start")));
+  machine.at(320, event::Tick{});
+  EXPECT_THAT(machine.at(321, event::Ended{kCrash}),
+              testing::Contains(HasSubstr("died (signal 11")))
+      << "another end is said";
 }
 
 TEST(Next, WhatIsNotReadyInTimeIsKilledAndThenFollowsWhatFollowsADeath) {

@@ -12,6 +12,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "ipc/base/quote.hpp"
 #include "services/landmarks/inference/cost.hpp"
 #include "services/landmarks/inference/onednn/fuse.hpp"
 #include "services/landmarks/inference/onednn/operators.hpp"
@@ -141,7 +142,7 @@ Result<std::unique_ptr<OnednnNetwork>> open(const std::filesystem::path& file) {
       return fail(Errc::bad_config, place + ": " + warm.error().what);
     return network;
   } catch (const onednn::Refused& refused) {
-    return fail(Errc::bad_config, place + ": " + refused.what);
+    return fail(Errc::bad_config, place + ": " + shown_line(refused.what, 400));
   } catch (const onednn::Program::TooLarge&) {
     return fail(Errc::bad_config, fmt::format("{}: it needs more than {} MB of memory", place,
                                               onednn::Program::kMostBytes >> 20));

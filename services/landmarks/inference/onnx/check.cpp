@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "ipc/base/quote.hpp"
 #include "services/landmarks/inference/onnx/model.hpp"
 
 namespace handcast::landmarks::onnx {
@@ -14,7 +15,11 @@ namespace {
 constexpr std::int64_t kOldestOpset = 7, kNewestOpset = 21;
 constexpr std::size_t kMostExtents = 6;
 
-tl::unexpected<Error> wrong(std::string what) { return fail(Errc::bad_config, std::move(what)); }
+/// The sentence may name what the file names.
+tl::unexpected<Error> wrong(std::string_view what) {
+  constexpr std::size_t kLongest = 400;
+  return fail(Errc::bad_config, shown_line(what, kLongest));
+}
 
 Result<void> check_port(const Port& port, const char* kind) {
   if (port.shape.size() > kMostExtents || elements(port.shape) == 0)

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/quote.hpp"
 #include "services/landmarks/inference/onnx/model.hpp"
 
 namespace handcast::landmarks::onnx {
@@ -173,7 +174,8 @@ Result<Model> parse_model(std::span<const std::uint8_t> bytes) try {
   if (auto sound = check_model(model); !sound) return tl::make_unexpected(sound.error());
   return model;
 } catch (const Broken& error) {
-  return fail(Errc::bad_config, error.what);
+  constexpr std::size_t kLongest = 400;  // it may name what the file names
+  return fail(Errc::bad_config, shown_line(error.what, kLongest));
 }
 
 Result<Model> read_model(const std::filesystem::path& file) {

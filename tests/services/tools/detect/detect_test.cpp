@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "services/recording/arrays/recorded_hands.hpp"
 #include "services/tools/detect/run.hpp"
@@ -39,6 +40,26 @@ class Detect : public testing::Test {
     return std::to_string(number) + "_" + rest;
   }
 
+  /// The capture of a left hand as a picture of a right one.
+  fs::path mirrored(int number) {
+    const auto seen = renderer::read_picture(real() / fmt_name(number, "camera.png"));
+    if (!seen) return {};
+    renderer::Texture turned(seen->width(), seen->height());
+    for (int y = 0; y < seen->height(); ++y)
+      for (int x = 0; x < seen->width(); ++x) turned.at(x, y) = seen->at(seen->width() - 1 - x, y);
+    auto file = scratch_.path() / ("mirrored_" + std::to_string(number) + ".png");
+    return renderer::write_png(file, turned.view()) ? file : fs::path();
+  }
+  /// "left right ": those of the hands of a report, in its order.
+  static std::string sides_in(const std::string& text) {
+    std::string sides;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+      for (const std::string side : {"left ", "right "})
+        if (line.starts_with("  " + side + "hand, presence")) sides += side;
+    return sides;
+  }
+
   test::Scratch scratch_;
   Options options_;
   std::vector<fs::path> joints_;
@@ -47,10 +68,10 @@ class Detect : public testing::Test {
 TEST_F(Detect, PrintsEveryHandOfEveryPicture) {
   const auto text = run(options_);
   ASSERT_TRUE(text) << text.error().what;
-  EXPECT_THAT(*text, HasSubstr("1_camera.png: 1 hand, "));
-  EXPECT_THAT(*text, HasSubstr("6_camera.png: 1 hand, "));
-  EXPECT_THAT(*text, HasSubstr("left hand, presence 0.9"));
-  EXPECT_THAT(*text, HasSubstr("palm "));
+  EXPECT_THAT(text->text, HasSubstr("1_camera.png: 1 hand, "));
+  EXPECT_THAT(text->text, HasSubstr("6_camera.png: 1 hand, "));
+  EXPECT_THAT(text->text, HasSubstr("left hand, presence 0.9"));
+  EXPECT_THAT(text->text, HasSubstr("palm "));
 }
 
 TEST_F(Detect, TellsProgramsTheSameAsJson) {
@@ -58,7 +79,7 @@ TEST_F(Detect, TellsProgramsTheSameAsJson) {
   options_.joints = joints_;
   const auto text = run(options_);
   ASSERT_TRUE(text) << text.error().what;
-  const auto images = nlohmann::json::parse(*text).at("images");
+  const auto images = nlohmann::json::parse(text->text).at("images");
   ASSERT_EQ(images.size(), 2u);
   const auto& hand = images[1].at("hands").at(0);
   EXPECT_EQ(hand.at("side"), "left");
@@ -118,7 +139,7 @@ TEST_F(Detect, ANameThatIsNotUtf8IsPrintedAsJsonAllTheSame) {
   options_.json = true;
   const auto text = run(options_);
   ASSERT_TRUE(text) << text.error().what;
-  EXPECT_THAT(*text, HasSubstr("caf\xef\xbf\xbd.png"));
+  EXPECT_THAT(text->text, HasSubstr("caf\xef\xbf\xbd.png"));
 }
 
 TEST_F(Detect, JointsMayBe21PointsInPixels) {
@@ -172,8 +193,50 @@ TEST_F(Detect, HandcastsModelNeedsNoFileFromOutsideIfThereIsATracker) {
   options_.joints = joints_;
   const auto text = run(options_);
   ASSERT_TRUE(text) << text.error().what;
-  EXPECT_THAT(*text, HasSubstr("1_camera.png: 1 hand, "));
-  EXPECT_THAT(*text, HasSubstr("6_camera.png: 1 hand, "));
+  EXPECT_THAT(text->text, HasSubstr("1_camera.png: 1 hand, "));
+  EXPECT_THAT(text->text, HasSubstr("6_camera.png: 1 hand, "));
+}
+
+TEST_F(Detect, WithoutATrackerAndAPalmNetworkTheHandIsSearchedInTheBrightParts) {
+  options_.backend = "handcast";
+  options_.models = scratch_.path();  // holds no file
+  options_.images = {mirrored(1), options_.images[0], options_.images[1], mirrored(6)};
+  const auto report = run(options_);
+  ASSERT_TRUE(report) << report.error().what;
+  EXPECT_TRUE(report->has_hand);
+  EXPECT_THAT(report->text, HasSubstr("mirrored_1.png: 1 hand, "));
+  EXPECT_THAT(report->text, HasSubstr("1_camera.png: 1 hand, "));
+  EXPECT_THAT(report->text, HasSubstr("6_camera.png: 1 hand, "));
+  EXPECT_THAT(report->text, HasSubstr("mirrored_6.png: 1 hand, "));
+  const auto sides = sides_in(report->text);
+  EXPECT_EQ(sides, "right left left right ");
+}
+
+TEST_F(Detect, APictureWithoutAHandSaysWhy) {
+  renderer::Texture dark(320, 240);
+  std::ranges::fill(dark.pixels(), 0xff101010u);
+  const auto file = scratch_.path() / "dark.png";
+  ASSERT_TRUE(renderer::write_png(file, dark.view()));
+  options_.images = {file};
+  options_.backend = "handcast";
+  options_.models = scratch_.path();
+  const auto report = run(options_);
+  ASSERT_TRUE(report) << report.error().what;
+  EXPECT_FALSE(report->has_hand);
+  EXPECT_THAT(report->text, HasSubstr("dark.png: 0 hands"));
+  EXPECT_THAT(report->text, HasSubstr("no part of it is bright before a dark background"));
+  options_.joints = {joints_[0]};
+  const auto with_joints = run(options_);
+  ASSERT_TRUE(with_joints) << with_joints.error().what;
+  EXPECT_THAT(with_joints->text, HasSubstr("sees no hand where --joints has it"));
+  options_.joints.clear();
+  options_.backend = "mediapipe";
+  options_.models = test::models();
+  options_.json = true;
+  const auto as_json = run(options_);
+  ASSERT_TRUE(as_json) << as_json.error().what;
+  EXPECT_THAT(nlohmann::json::parse(as_json->text)["images"][0]["why_none"].get<std::string>(),
+              HasSubstr("palm network finds no palm"));
 }
 
 TEST_F(Detect, WithoutAChoiceAndMediapipesFilesItTakesHandcastsModelAndSaysSo) {
@@ -187,7 +250,7 @@ TEST_F(Detect, WithoutAChoiceAndMediapipesFilesItTakesHandcastsModelAndSaysSo) {
       testing::internal::GetCapturedStderr(),
       testing::AllOf(HasSubstr("with handcast's own network, because "), HasSubstr("is missing")));
   ASSERT_TRUE(text) << text.error().what;
-  EXPECT_THAT(*text, HasSubstr("1_camera.png: 1 hand, "));
+  EXPECT_THAT(text->text, HasSubstr("1_camera.png: 1 hand, "));
 }
 
 TEST_F(Detect, IsAVerbWithTheUsualExitCodes) {
@@ -202,6 +265,10 @@ TEST_F(Detect, IsAVerbWithTheUsualExitCodes) {
   const std::string image = " " + options_.images[0].string();
   EXPECT_EQ(exit_code("--backend mediapipe --model " + options_.models + image), 0);
   EXPECT_EQ(exit_code("--backend mediapipe --model " + scratch_.path().string() + image), 100);
+  renderer::Texture dark(64, 64);
+  const auto file = scratch_.path() / "dark.png";
+  ASSERT_TRUE(renderer::write_png(file, dark.view()));
+  EXPECT_EQ(exit_code("--backend mediapipe --model " + options_.models + " " + file.string()), 1);
   EXPECT_NE(exit_code("--abacus --model " + options_.models + image), 0);
 }
 

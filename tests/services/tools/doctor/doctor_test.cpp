@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "services/tools/doctor/devices.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
 #include "services/tools/doctor/rig_file.hpp"
@@ -95,6 +96,56 @@ TEST_F(Computer, TheSoftwareAndTheDeviceOfUltraleapAreLookedFor) {
   write("sys/bus/usb/devices/1-4/idProduct", "0003");
   EXPECT_EQ(tracker("tracker software").grade, Grade::good);
   EXPECT_EQ(tracker("tracker device").sentence, "Leap Motion Controller (f182:0003) at USB 1-4");
+}
+
+TEST_F(Computer, TheSecondTrackerIsLookedForToo) {
+  rig_.pose.backend = "none";
+  rig_.pose.second = "leapc";
+  const auto findings = examine_tracker(rig_, Asking::now, scratch_.path());
+  EXPECT_EQ(finding_of(findings, "tracker device").grade, Grade::fault);
+}
+
+TEST(Devices, ACameraThatIsNotAttachedIsAFaultThatSaysWhatIsThere) {
+  config::Rig rig;
+  rig.camera.backend = "v4l2";
+  rig.camera.v4l2.device = "/dev/video99";
+  rig.camera2 = rig.camera;
+  for (const auto asking : {Asking::now, Asking::not_now})
+    for (const auto* check : {"camera device", "camera2 device"}) {
+      const auto finding = finding_of(examine_devices(rig, asking), check);
+      EXPECT_EQ(finding.grade, Grade::fault);
+      EXPECT_EQ(finding.sentence, "there is no camera '/dev/video99'");
+      EXPECT_THAT(finding.remedy, HasSubstr("`handcast up` waits for it; "));
+      EXPECT_THAT(finding.remedy, HasSubstr("attached"));
+    }
+}
+
+TEST(Devices, EveryBackEndWithADeviceIsLookedFor) {
+  for (const auto* backend : {"aravis", "v4l2", "leap"}) {
+    config::Rig rig;
+    rig.camera.backend = backend;
+    rig.camera.aravis.device = rig.camera.leap.device = "nobody";
+    rig.camera.v4l2.device = "nobody";
+    const auto findings = examine_devices(rig, Asking::now);
+    ASSERT_EQ(findings.size(), 1u) << backend;
+    EXPECT_EQ(findings[0].grade, Grade::fault) << backend;
+  }
+  config::Rig rig;
+  EXPECT_TRUE(examine_devices(rig, Asking::now).empty()) << "the twin has none";
+  rig.dlp.backend = "lightcrafter";
+  rig.dlp.device = "nobody";
+  EXPECT_EQ(finding_of(examine_devices(rig, Asking::now), "dlp device").grade, Grade::fault);
+}
+
+TEST(Devices, WhatIsAttachedInsteadIsNamedWithItsBackEnd) {
+  const std::vector<devices::Attached> attached{
+      {.kind = devices::Kind::camera,
+       .name = "'HD Webcam' (/dev/video0)",
+       .about = {},
+       .settings = {{"camera.backend", "v4l2"}, {"camera.v4l2.device", "/dev/video0"}}}};
+  EXPECT_EQ(instead_of_missing(devices::Kind::camera, attached),
+            "attached: 'HD Webcam' (/dev/video0) (camera.backend = \"v4l2\")");
+  EXPECT_EQ(instead_of_missing(devices::Kind::controller, attached), "no controller is attached");
 }
 
 TEST_F(Computer, ARuntimeThatIsNotThereIsAFaultWithARemedy) {

@@ -8,7 +8,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "config/rig.hpp"
 #include "services/tools/devices/trackers.hpp"
+#include "services/tools/init/rig_text.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/tools/init/some_devices.hpp"
 
@@ -122,13 +124,39 @@ TEST_F(Interview, ARealTrackerDoesNotSeeTheTwinsHand) {
   EXPECT_THAT(refusal_of(guess({})), HasSubstr("'openxr' is not none or twin"));
 }
 
-TEST_F(Interview, ATrackerThatIsNotThereIsRefusedWithItsRemedy) {
+TEST_F(Interview, ARigIsWrittenBeforeItsDevicesAreThere) {
+  options_.flags = {.camera = "aravis:23456789",
+                    .output = "window:EPSON PJ",
+                    .tracker = "openxr",
+                    .calibration = "none"};
+  const auto plan = guess({});
+  ASSERT_TRUE(plan) << plan.error().what;
+  EXPECT_EQ(plan->camera.backend, "aravis");
+  EXPECT_EQ(plan->camera.name, "23456789");
+  EXPECT_EQ(plan->light.backend, "window");
+  EXPECT_EQ(plan->light.name, "EPSON PJ");
+  EXPECT_EQ(plan->tracker, Tracker::openxr);
+  const auto text = rig_text(*plan, "/nowhere/rig.toml");
+  const auto rig = config::parse_rig(text, "/nowhere/rig.toml");
+  ASSERT_TRUE(rig) << rig.error().what << text;
+  EXPECT_EQ(rig->camera.backend, "aravis");
+  EXPECT_EQ(rig->camera.aravis.device, "23456789");
+  EXPECT_EQ(rig->projector.window.monitor, "EPSON PJ");
+  EXPECT_THAT(text, HasSubstr("23456789, which is not attached now"));
+  options_.flags = {.camera = "nobody:1"};
+  EXPECT_THAT(refusal_of(guess({})), HasSubstr("aravis:NAME or v4l2:NAME is one that is not"));
+}
+
+TEST_F(Interview, ATrackerThatIsNotThereIsNamedWithItsRemedy) {
   const auto absent = devices::absent_trackers();
   if (std::ranges::find(absent, "leapc", &devices::AbsentTracker::backend) == absent.end())
     GTEST_SKIP() << "Ultraleap's software is installed";
   options_.flags = {.tracker = "leapc"};
-  EXPECT_THAT(refusal_of(guess({colour_webcam()})),
-              HasSubstr("'leapc' is not none or twin: no device of Ultraleap is attached, and "
+  const auto plan = guess({colour_webcam()});
+  ASSERT_TRUE(plan) << plan.error().what;
+  EXPECT_EQ(plan->tracker, Tracker::leapc);
+  EXPECT_THAT(plan->tracker_name,
+              HasSubstr("leapc, which is not there now: no device of Ultraleap is attached, and "
                         "Ultraleap's library is missing; install"));
 }
 

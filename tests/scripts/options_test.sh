@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The options of the scripts: "--name=value" is "--name value".
+set -euo pipefail
+source scripts/lib.sh
+expect() {
+  local wanted=$1
+  shift
+  split_values "$@"
+  [ "${words[*]@Q}" = "$wanted" ] || { echo "$*: ${words[*]@Q}, not $wanted"; exit 1; }
+}
+expect "'--seconds' '2'" --seconds=2
+expect "'--out' 'a b' 'x=y'" "--out=a b" x=y
+expect "'--a' 'b=c' '--' '--d=e'" --a=b=c -- --d=e
+expect ""
+for script in demo bench results get-models train-landmarks; do
+  [[ $("scripts/$script" -h) == "scripts/$script"* ]] || { echo "scripts/$script -h: no help"; exit 1; }
+done
