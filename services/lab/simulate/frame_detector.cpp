@@ -78,18 +78,9 @@ std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin) {
   return std::make_unique<TwinDetector>(twin);
 }
 
-landmarks::DetectorChoice simulated_backend(const config::Rig& rig, config::Viewpoint at) {
-  auto choice = landmarks::choose_detector(rig, at);
-  if (choice.backend == "replay")
-    choice = {"twin",
-              "landmarks: recorded landmarks belong to other images, so 'twin' takes their "
-              "place"};
-  return choice;
-}
-
 std::vector<std::filesystem::path> network_files(const config::Rig& rig) {
   const auto folder = landmarks::models_folder(rig.landmarks.models);
-  const auto backend = simulated_backend(rig).backend;
+  const auto backend = landmarks::choose_detector(rig).backend;
   for (const auto& model : landmarks::landmark_models()) {
     if (model.name != backend || !folder) continue;
     auto files = model.files({.folder = *folder});
@@ -103,7 +94,7 @@ Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& ri
                                                            const calib::Calibration& calibration,
                                                            const twin::Twin& twin,
                                                            config::Viewpoint at) {
-  if (simulated_backend(rig, at).backend == "twin") return make_twin_detector(twin);
+  if (landmarks::choose_detector(rig, at).backend == "twin") return make_twin_detector(twin);
   const auto camera = calib::camera_at(calibration, at);
   if (!camera) return tl::make_unexpected(camera.error());
   auto detector = landmarks::open_detector(rig, calibration, 0, at);

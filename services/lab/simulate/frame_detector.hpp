@@ -44,18 +44,12 @@ class FrameDetector {
 /// Makes the twin's model of a detector. `twin` must outlive it.
 std::unique_ptr<FrameDetector> make_twin_detector(const twin::Twin& twin);
 
-/// The back end that the simulator runs for a rig: that of landmarks::choose_detector(), on the
-/// twin's images, except that "replay" becomes "twin" because recorded landmarks belong to other
-/// images.
-landmarks::DetectorChoice simulated_backend(const config::Rig& rig,
-                                            config::Viewpoint at = config::Viewpoint::first);
-
 /// The files of networks that it reads, some of which need not exist; none if it runs no network.
 std::vector<std::filesystem::path> network_files(const config::Rig& rig);
 
-/// Opens the detector of simulated_backend(). A real detector has the age, the clock error and the
-/// faults of the twin's model (Twin::spoil), but neither its noise nor its bias. `twin`: at the
-/// same viewpoint; it must outlive the detector. Errors: those of landmarks::open_detector
+/// Opens the detector of landmarks::choose_detector(). A real detector has the age, the clock error
+/// and the faults of the twin's model (Twin::spoil), but neither its noise nor its bias. `twin`: at
+/// the same viewpoint; it must outlive the detector. Errors: those of landmarks::open_detector
 /// (bad_config if a model is missing).
 Result<std::unique_ptr<FrameDetector>> open_frame_detector(const config::Rig& rig,
                                                            const calib::Calibration& calibration,

@@ -197,7 +197,7 @@ OnDetection from(std::int64_t start_ns, DetectorTally& tally) {
 
 nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig) {
   auto json = tally.to_json();
-  const auto choice = simulated_backend(rig);
+  const auto choice = landmarks::choose_detector(rig);
   json["backend"] = choice.backend;
   json["used"] = rig.cascade.filter.method != config::FilterMethod::none;
   json["why"] = choice.why.empty() ? nlohmann::json() : nlohmann::json(choice.why);

@@ -22,8 +22,13 @@ struct VirtualRig {
   std::optional<pose::Lifter> lifter;            ///< the same; empty if the rig has a tracker
   std::shared_ptr<SecondView> second;            ///< the same; null without pose.backend "stereo"
 };
-/// Opens the parts for a rig. Errors: those of Twin::create, Pipeline::create and
-/// open_frame_detector.
+
+/// Refuses the back ends of sensors whose light cannot be scored: all that do not see the twin's
+/// hand. Errors: bad_config, with all of them and what to add to the command.
+Result<void> check_can_be_scored(const config::Rig& rig);
+
+/// Opens the parts for a rig. Errors: those of check_can_be_scored, Twin::create, Pipeline::create
+/// and open_frame_detector.
 Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration);
 
 /// Called after each projector frame with the virtual time done so far, warm-up included.

@@ -1,13 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/join.hpp"
 #include "services/lab/simulate/recovery.hpp"
 #include "services/lab/simulate/score.hpp"
 
 namespace handcast::simulate {
+namespace {
+
+struct Chosen {
+  const char* setting;
+  std::string backend;
+  bool can_be_scored;
+};
+
+/// The back ends of sensors that the rig uses.
+std::vector<Chosen> sensors_of(const config::Rig& rig) {
+  const auto& tracker = rig.pose.backend;
+  const auto by_twin = [](const std::string& backend) { return backend == "twin"; };
+  const auto detector = [&](const char* setting, config::Viewpoint at) {
+    const auto backend = landmarks::choose_detector(rig, at).backend;
+    return Chosen{setting, backend, backend != "replay"};  // recorded landmarks: other images
+  };
+  std::vector<Chosen> all{
+      {"camera.backend", rig.camera.backend, by_twin(rig.camera.backend)},
+      {"pose.backend", tracker, by_twin(tracker) || tracker == "none" || tracker == "stereo"},
+      {"pose.second", rig.pose.second, rig.pose.second.empty()},
+      detector("landmarks.backend", config::Viewpoint::first)};
+  if (tracker != "stereo") return all;
+  const auto& second = rig.camera2.backend;  // "none": the first camera has two eyes
+  all.push_back({"camera2.backend", second, by_twin(second) || second == "none"});
+  all.push_back(detector("landmarks2.backend", config::Viewpoint::second));
+  return all;
+}
+
+}  // namespace
+
+Result<void> check_can_be_scored(const config::Rig& rig) {
+  std::vector<std::string> chosen, remedies;
+  for (const auto& [setting, backend, can_be_scored] : sensors_of(rig)) {
+    if (can_be_scored) continue;
+    chosen.push_back(fmt::format("{} = \"{}\"", setting, backend));
+    const bool is_second = setting == std::string_view("pose.second");
+    remedies.push_back(fmt::format("--set {}={}", setting, is_second ? "" : "twin"));
+  }
+  if (chosen.empty()) return {};
+  return fail(Errc::bad_config,
+              fmt::format("{} cannot be scored: only the twin knows where the true hand is. To "
+                          "simulate the rig with the twin's sensors, add {}",
+                          join(chosen, ", "), join(remedies, " ")));
+}
 
 Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration) {
+  if (auto possible = check_can_be_scored(rig); !possible)
+    return tl::make_unexpected(possible.error());
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return tl::make_unexpected(twin.error());
   const auto truth = [&world = **twin](renderer::Side side, std::int64_t time_ns) {

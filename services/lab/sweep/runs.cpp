@@ -87,7 +87,7 @@ std::string unnamed_files(const config::Rig& rig, Contents& contents) {
   std::string hashes;
   if (rig.twin.shape.mesh == "webxr")
     hashes += contents.of(twin::webxr_hand_file().string()) + '\n';
-  hashes += simulate::simulated_backend(rig).backend + '\n';
+  hashes += landmarks::choose_detector(rig).backend + '\n';
   for (const auto& file : simulate::network_files(rig)) hashes += contents.of(file.string()) + '\n';
   return hashes;
 }

@@ -236,12 +236,6 @@ TEST(SimulatedDetector, ABackEndThatIsNotThereIsNamedBesideThoseThatAre) {
                                        Not(HasSubstr("\n"))));
 }
 
-TEST(SimulatedDetector, ARecordingsLandmarksAreOfOtherImagesSoTheTwinsModelStandsIn) {
-  EXPECT_EQ(
-      run_rig("twin", "builtin:wave", 0.05, {"landmarks.backend=replay"})["detector"]["backend"],
-      "twin");
-}
-
 /// config/rigs/paper.toml as it is shipped, with the folder of MediaPipe's files.
 nlohmann::json run_shipped_paper(const std::filesystem::path& models) {
   auto rig = config::load_rig(source_root() / "config/rigs/paper.toml",
