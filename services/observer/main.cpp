@@ -7,6 +7,7 @@
 #include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "services/observer/judge.hpp"
+#include "services/observer/score_log.hpp"
 #include "services/runtime/context.hpp"
 
 using namespace handcast;
@@ -33,11 +34,15 @@ static double number(const nlohmann::json& json, const char* pointer) {
   return json.contains(found) && json.at(found).is_number() ? json.at(found).get<double>() : 0.0;
 }
 
-static void log_scores(const observer::Judge& judge) {
+static void log_scores(const observer::Judge& judge, observer::ScoreLog& log,
+                       std::int64_t time_ns) {
   if (judge.empty()) return;
   const auto json = judge.scores();
-  log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}",
-            number(json, "/interior_mm/p95"), number(json, "/coverage"), number(json, "/spill"));
+  const observer::LoggedScores scores{number(json, "/interior_mm/p95"), number(json, "/coverage"),
+                                      number(json, "/spill")};
+  if (log.is_due(time_ns, scores))
+    log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}", scores.interior_p95_mm,
+              scores.coverage, scores.spill);
 }
 
 /// Scores the newest projected frame, observer.rate_hz times per second, at low priority.
@@ -53,6 +58,7 @@ static void run_observer(service::Context& context) {
 
   const auto period_ns = seconds_to_ns(1 / context.rig().observer.rate_hz);
   std::int64_t score_ns = now_ns(), save_ns = score_ns + to_ns(2s), log_ns = score_ns + to_ns(5s);
+  observer::ScoreLog score_log;
   context.ready();
   while (context.running()) {
     sleep_until_ns(std::min(score_ns, now_ns() + to_ns(50ms)));
@@ -67,7 +73,7 @@ static void run_observer(service::Context& context) {
       save_ns = time_ns + to_ns(2s);
     }
     if (time_ns >= log_ns) {
-      log_scores(*judge);
+      log_scores(*judge, score_log, time_ns);
       log_ns = time_ns + to_ns(5s);
     }
   }

@@ -30,10 +30,7 @@ void print_line(std::string_view line) {
 }
 
 void show_progress(std::string_view line) {
-  if (has_terminal())
-    log::put(fmt::format("{}{}\r", kClearLine, line));  // the next output overwrites this line
-  else
-    print_line(line);
+  log::put(fmt::format("{}{}\r", kClearLine, line));  // the next output overwrites this line
 }
 
 }  // namespace handcast::supervisor

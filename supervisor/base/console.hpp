@@ -9,7 +9,7 @@ namespace handcast::supervisor {
 /// Prints a line to stderr. On a terminal, it first erases the progress line. In the journal, the
 /// line has the priority of its level (log::for_journal()).
 void print_line(std::string_view line);
-/// Replaces the progress line. If stderr is not a terminal, prints a line.
+/// Replaces the progress line of the terminal.
 void show_progress(std::string_view line);
 /// True if stderr is a terminal.
 bool has_terminal();

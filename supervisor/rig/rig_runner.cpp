@@ -28,7 +28,7 @@ constexpr std::int64_t kTick_ns = 50'000'000;
 /// If a tick is this late, the supervisor, or the machine, was stopped.
 constexpr std::int64_t kStoodStill_ns = 1'000'000'000;
 
-std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : 5'000'000'000; }
+std::int64_t progress_period_ns() { return has_terminal() ? 200'000'000 : Diary::kLook_ns; }
 
 Result<void> write_report(const std::filesystem::path& folder, const nlohmann::json& report) {
   return write_whole(folder / "live.json", report.dump(2) + "\n");
@@ -239,8 +239,15 @@ void RigRunner::forgive_a_standstill(std::int64_t now) {
 
 void RigRunner::show_progress_now_and_then(std::int64_t now) {
   if (now < next_progress_ns_ || rig_.phase != Phase::up) return;
-  if (next_progress_ns_ > 0) show_progress(progress_line(rig_.view()));
+  if (next_progress_ns_ > 0) show_progress(now);
   next_progress_ns_ = now + progress_period_ns();
+}
+
+void RigRunner::show_progress(std::int64_t now) {
+  const auto view = rig_.view();
+  if (has_terminal()) return supervisor::show_progress(progress_line(view));
+  for (const auto& entry : diary_.look(now, figures_of(view), progress_line(view)))
+    log::write(entry.level, entry.text);
 }
 
 void RigRunner::on_notice(Service& service, Notice notice) {

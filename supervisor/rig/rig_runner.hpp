@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "supervisor/rig/diary.hpp"
 #include "supervisor/rig/live_rig.hpp"
 #include "supervisor/rig/requests.hpp"
 #include "supervisor/succession/adoption.hpp"
@@ -52,6 +53,7 @@ class RigRunner {
   void follow_up();
   void forgive_a_standstill(std::int64_t now_ns);
   void show_progress_now_and_then(std::int64_t now_ns);
+  void show_progress(std::int64_t now_ns);
   void on_notice(Service& service, Notice notice);
   void on_failed(Service& service);
   void come_up();
@@ -79,6 +81,7 @@ class RigRunner {
   std::int64_t stop_by_ns_ = 0;  ///< when the services of a rig that stops are killed
   std::int64_t next_beat_ns_ = 0;
   std::int64_t next_progress_ns_ = 0;
+  Diary diary_;  ///< what is logged without a terminal
   std::int64_t last_tick_ns_ = 0;
   std::uint64_t revision_ = 0;  ///< revision of the services that was saved last
   bool save_failed_ = false;

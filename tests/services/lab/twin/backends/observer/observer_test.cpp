@@ -5,6 +5,7 @@
 
 #include "services/lab/twin/backends/observer/live_judge.hpp"
 #include "services/lab/twin/backends/observer/live_score.hpp"
+#include "services/observer/score_log.hpp"
 
 namespace handcast::observer {
 namespace {
@@ -77,6 +78,27 @@ TEST(LiveJudge, TheScoreDoesNotDependOnWhenTheRigWasStarted) {
   EXPECT_EQ(shifted.hands[0].hand_px, expected.hands[0].hand_px);
   EXPECT_EQ(shifted.hands[0].speed_m_s, expected.hands[0].speed_m_s);
   EXPECT_EQ(shifted.hands[0].lit_px, 0);
+}
+
+TEST(ScoreLog, ScoresAreLoggedAtFirstThenHourlyAndWhenTheyChange) {
+  constexpr std::int64_t kLook_ns = 5 * kSecond_ns;
+  ScoreLog log;
+  std::int64_t now_ns = 0;
+  const auto lines = [&](int looks, const LoggedScores& scores) {
+    int count = 0;
+    for (int i = 0; i < looks; ++i) count += log.is_due(now_ns += kLook_ns, scores);
+    return count;
+  };
+  constexpr int kHour = 3600 / 5;
+  constexpr LoggedScores kUsual{8, 0.98, 0.02};
+  EXPECT_EQ(lines(9 * kHour + 1, kUsual), 10);
+  EXPECT_EQ(lines(kHour / 2, {9, 0.97, 0.03}), 0) << "not a change that a person sees";
+  EXPECT_EQ(lines(kHour / 4, {8, 0.60, 0.02}), 1) << "a third of the hand is dark";
+  EXPECT_EQ(lines(kHour / 4, kUsual), 1) << "as before";
+  EXPECT_EQ(lines(kHour / 4, {20, 0.98, 0.02}), 1);
+  int restless = 0;
+  for (int i = 0; i < kHour; ++i) restless += lines(1, {i % 2 ? 20.0 : 4.0, 0.98, 0.02});
+  EXPECT_LE(restless, 60) << "once a minute at most";
 }
 
 }  // namespace
