@@ -4,13 +4,17 @@
 
 #include <algorithm>
 
+#include "ipc/base/clock.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "renderer/media/picture.hpp"
+#include "services/tools/preview/rig_follower.hpp"
 #include "tests/system/running_rig.hpp"
 #include "tests/system/variable.hpp"
 
 namespace handcast::system_test {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -108,6 +112,35 @@ TEST_F(Preview, ARigThatGoesDownEndsThePreviewWithASentence) {
   EXPECT_EQ(preview.wait(), 111);
   EXPECT_THAT(preview.log(), HasSubstr("handcast preview: "));
   EXPECT_FALSE(std::filesystem::exists(in_scratch("a.png")));
+}
+
+TEST_F(Preview, AFollowedRigIsDarkWhileItIsDownAndGoesOnWhenItIsUpAgain) {
+  const auto is_lit = [](const preview::Scene& scene) {
+    return std::ranges::any_of(scene.light.pixels(), [](auto pixel) { return pixel != 0; });
+  };
+  const Variable scope(control::kScopeVariable, scratch_.path().string());
+  auto rig = up();
+  wait_until_light();
+  auto feed = preview::RigFeed::open("");
+  ASSERT_TRUE(feed) << feed.error().what;
+  preview::RigFollower follower(std::move(*feed));
+  const auto wait_until = [&](auto is_so) {
+    for (int i = 0; i < 2000; ++i) {
+      follower.look();
+      if (is_so(follower.scene())) return true;
+      sleep_until_ns(now_ns() + preview::RigFeed::kPeriod_ns);
+    }
+    return false;
+  };
+  EXPECT_TRUE(wait_until(is_lit));
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  EXPECT_TRUE(wait_until([](const auto& scene) { return scene.is_down; }));
+  const auto dark = follower.scene();
+  EXPECT_EQ(dark.light.width(), 0);
+  EXPECT_THAT(dark.missing, ElementsAre(HasSubstr("the rig is down; `handcast up` starts it")));
+  EXPECT_EQ(rig->wait(), 0);
+  rig = up();
+  EXPECT_TRUE(wait_until(is_lit)) << "by itself";
 }
 
 TEST_F(Preview, WithoutARigItSaysSo) {

@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "renderer/media/picture.hpp"
 #include "renderer/window/window.hpp"
 #include "services/tools/preview/keys.hpp"
-#include "services/tools/preview/rig_feed.hpp"
+#include "services/tools/preview/rig_follower.hpp"
 
 namespace handcast::preview {
 namespace {
@@ -56,12 +57,12 @@ std::string save(const renderer::Texture& picture) {
 /// The window with what it shows.
 class Show {
  public:
-  Show(RigFeed& feed, renderer::Window& window, const Look& look)
-      : feed_(feed), window_(window), look_(look) {}
+  Show(RigFeed feed, renderer::Window& window, const Look& look)
+      : rig_(std::move(feed)), window_(window), look_(look) {}
 
   /// Reads once; draws and obeys if it is time. Returns false if the user ends.
-  Result<bool> turn() {
-    if (auto well = feed_.look(); !well) return tl::make_unexpected(well.error());
+  bool turn() {
+    rig_.look();
     const auto begin_ns = now_ns();
     if (begin_ns < next_draw_ns_) return true;
     const bool goes_on = redraw();
@@ -72,8 +73,8 @@ class Show {
  private:
   bool redraw() {
     if (!look_.frozen) {
-      scene_ = feed_.scene();
-      gauges_ = feed_.gauges();
+      scene_ = rig_.scene();
+      gauges_ = rig_.gauges();
     }
     if (now_ns() > note_until_ns_) look_.note.clear();
     look_.width_px = window_.width_px();
@@ -90,7 +91,7 @@ class Show {
     return !window_.is_closed();
   }
 
-  RigFeed& feed_;
+  RigFollower rig_;
   renderer::Window& window_;
   Look look_;
   Scene scene_;
@@ -105,12 +106,10 @@ Result<void> show_live(const Options& options) {
   if (!feed) return tl::make_unexpected(std::move(feed.error()));
   auto window = open_window(feed->rig(), options.look);
   if (!window) return tl::make_unexpected(std::move(window.error()));
-  Show show(*feed, **window, options.look);
+  Show show(std::move(*feed), **window, options.look);
   for (auto next_ns = now_ns();; next_ns = std::max(next_ns + RigFeed::kPeriod_ns, now_ns())) {
     sleep_until_ns(next_ns);
-    const auto goes_on = show.turn();
-    if (!goes_on) return tl::make_unexpected(goes_on.error());
-    if (!*goes_on) return {};
+    if (!show.turn()) return {};
   }
 }
 

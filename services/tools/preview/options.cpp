@@ -42,7 +42,7 @@ Result<Parsed> parse(int argc, char** argv) {
            {0.1, kLongest_s});
   line.add("--layers LIST", layers,
            "What is shown over one another: all, or some of image, regions, light, drawing, "
-           "joints, landmarks, separated by commas; default: all but light");
+           "joints, landmarks, separated by commas; default: image,light");
   line.add("--size WIDTHxHEIGHT", size, "Size in pixels; default: 1600x900");
   auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());

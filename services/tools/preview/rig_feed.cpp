@@ -22,12 +22,12 @@ constexpr std::array kStreams{"camera.frames", "pose.hands", "landmarks.hands",
                               "projection.frames"};
 constexpr std::array kAgesOf{"image", "tracker", "landmarks"};
 constexpr std::int64_t kLate_ns = 100'000'000;  ///< later, the poses of the last look are gone
+constexpr auto kPatience = 100ms;               ///< with a supervisor that hangs
 constexpr std::size_t kMostAtOnce = 64;         ///< messages of one stream at one look
 
-Result<World> world_of(const std::string& rig) {
-  const auto text = control::ask_for_rig(rig);
-  if (!text) return tl::make_unexpected(text.error());
-  const auto config = config::parse_rig(*text, "applied rig");
+/// `applied`: the settings of the rig, TOML.
+Result<World> world_of(const std::string& applied) {
+  const auto config = config::parse_rig(applied, "applied rig");
   if (!config) return tl::make_unexpected(config.error());
   return load_world(*config);
 }
@@ -35,9 +35,22 @@ Result<World> world_of(const std::string& rig) {
 }  // namespace
 
 void RigFeed::learn_world() {
-  auto world = world_of(rig_);
+  auto applied = control::ask_for_rig(rig_);
+  auto world = applied.and_then(world_of);
+  if (applied) applied_ = std::move(*applied);
   no_world_ = world ? "" : "only images are shown: " + world.error().what;
   maker_ = std::make_unique<SceneMaker>(world ? std::optional(std::move(*world)) : std::nullopt);
+}
+
+/// A reload may have applied other settings, e.g. another brightness.
+void RigFeed::learn_changes() {
+  const auto now = now_ns();
+  if (now < next_change_ns_) return;
+  next_change_ns_ = now + kChange_ns;
+  const auto answer = control::ask_with_descriptors(rig_, {.verb = control::Verb::rig}, kPatience);
+  if (!answer) return;
+  const auto text = answer->object.find("rig");
+  if (text != answer->object.end() && text->is_string() && *text != applied_) learn_world();
 }
 
 template <class T>
@@ -141,13 +154,15 @@ void RigFeed::take_rates() {
   };
   take(camera_), take(poses_), take(landmarks_), take(light_);
   ask_status();
+  learn_changes();
   // The rig was reloaded with another calibration.
   if (newest_.frame && !msg::check_calibration(**newest_.frame, maker_->calibration()))
     learn_world();
 }
 
 void RigFeed::ask_status() {
-  const auto answer = control::ask_with_descriptors(rig_, {.verb = control::Verb::status}, 100ms);
+  const auto answer =
+      control::ask_with_descriptors(rig_, {.verb = control::Verb::status}, kPatience);
   silent_ = answer ? "" : answer.error().what;
   if (answer) status_ = answer->object.value("status", nlohmann::json());
 }

@@ -56,10 +56,11 @@ class RigFeed {
     std::optional<ipc::Sample<msg::Projection>> projection;
   };
   static constexpr std::size_t kRates = 120, kAges = 300;
-  static constexpr std::int64_t kRate_ns = 500'000'000;
+  static constexpr std::int64_t kRate_ns = 500'000'000, kChange_ns = 2'000'000'000;
 
   explicit RigFeed(std::string rig) : rig_(std::move(rig)) {}
   void learn_world();
+  void learn_changes();
   template <class T>
   Result<void> open_input(std::string_view name, Input<T>& input);
   Result<void> take_pair();
@@ -72,6 +73,7 @@ class RigFeed {
 
   std::string rig_;
   std::vector<std::string> missing_;  ///< sentences about what is not shown
+  std::string applied_;               ///< the settings that the world was made from, TOML
   std::string no_world_;              ///< why the rig's settings are not known; empty if they are
   std::string silent_;                ///< why the supervisor does not answer; empty if it does
   std::unique_ptr<SceneMaker> maker_;
@@ -83,7 +85,7 @@ class RigFeed {
   std::array<Series, 3> ages_ms_{Series(kAges), Series(kAges), Series(kAges)};
   nlohmann::json status_;
   std::deque<std::int64_t> age_times_;  ///< when ages were added, oldest first
-  std::int64_t next_rate_ns_ = 0;
+  std::int64_t next_rate_ns_ = 0, next_change_ns_ = 0;
   std::int64_t looked_ns_ = 0;  ///< the last look()
 };
 

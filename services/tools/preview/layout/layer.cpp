@@ -9,7 +9,11 @@
 
 namespace handcast::preview {
 
-Layers default_layers() { return Layers().set().reset(static_cast<std::size_t>(Layer::light)); }
+Layers default_layers() {
+  return Layers()
+      .set(static_cast<std::size_t>(Layer::image))
+      .set(static_cast<std::size_t>(Layer::light));
+}
 
 Result<Layers> parse_layers(std::string_view text) {
   if (text == "all") return Layers().set();

@@ -24,8 +24,7 @@ inline bool shows(const Layers& layers, Layer layer) {
   return layers[static_cast<std::size_t>(layer)];
 }
 
-/// The layers that are shown by default: all but the light, which hides the regions and has its
-/// own panel.
+/// The layers that are shown by default: the image and the light on it, which the others hide.
 Layers default_layers();
 /// The layers of a text like "image,joints"; "all" is all of them. Errors: bad_config.
 Result<Layers> parse_layers(std::string_view text);

@@ -113,7 +113,8 @@ void draw_camera_panel(Canvas& canvas, const Box& box, const Scene& scene, const
                                       1e-6 * static_cast<double>(scene.exposure_ns), scene.image_id)
                         : "";
   const auto inside = panel(canvas, box, "Camera", note);
-  if (width < 1) return draw_nothing(canvas, inside, "no image yet");
+  if (width < 1)
+    return draw_nothing(canvas, inside, scene.is_down ? "the rig is down" : "no image yet");
   draw_camera(canvas, fitted(inside, width, height), scene, layers);
 }
 
@@ -126,14 +127,16 @@ renderer::Texture as_seen(renderer::Texture light) {
 
 void draw_light_panel(Canvas& canvas, const Box& box, const Scene& scene) {
   const int width = scene.light.width(), height = scene.light.height();
-  const auto note =
-      width > 0 ? fmt::format("{} × {} px   frame {}", width, height, scene.light_id) : "";
+  auto note = width > 0 ? fmt::format("{} × {} px   frame {}", width, height, scene.light_id) : "";
+  if (width > 0 && scene.brightness < 1)
+    note = fmt::format("brightness {:.3g}   {}", scene.brightness, note);
   auto inside = panel(canvas, box, "Light as projected", note);
   const bool has_legend = inside.height > 2 * kLegend_px;
   if (has_legend) {
     inside.height -= kLegend_px;
     draw_legend(canvas, {inside.x, inside.bottom() + 6, inside.width, kLegend_px - 6}, scene);
   }
+  if (scene.is_down) return draw_nothing(canvas, inside, "dark: the rig is down");
   if (width < 1) return draw_nothing(canvas, inside, "no light yet");
   const auto frame = fitted(inside, width, height);
   canvas.fill(frame, Colour::of(0x000000));

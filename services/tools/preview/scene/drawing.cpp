@@ -138,13 +138,21 @@ std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedH
   return lines;
 }
 
-renderer::Texture whole_light(const msg::Projection& projection) {
+renderer::Texture whole_light(const msg::Projection& projection, double brightness) {
   renderer::Texture light(static_cast<int>(projection.width_px),
                           static_cast<int>(projection.height_px));
+  if (brightness <= 0) return light;
   for (std::uint32_t y = 0; y < projection.region_height_px; ++y)
     std::memcpy(light.row(projection.region_y_px + static_cast<int>(y)) + projection.region_x_px,
                 projection.pixels() + static_cast<std::size_t>(y) * projection.region_width_px,
                 std::size_t{projection.region_width_px} * sizeof(std::uint32_t));
+  if (brightness >= 1) return light;
+  config::Projector screen;  // sRGB, whatever the gamma of the projector
+  screen.brightness = brightness;
+  const auto table = renderer::light_table(screen);
+  for (auto& pixel : light.pixels())
+    pixel = (pixel & 0xff000000u) | static_cast<std::uint32_t>(table[pixel >> 16 & 255]) << 16 |
+            static_cast<std::uint32_t>(table[pixel >> 8 & 255]) << 8 | table[pixel & 255];
   return light;
 }
 

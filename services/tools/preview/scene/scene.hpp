@@ -17,7 +17,7 @@ namespace handcast::preview {
 /// The four regions of the mask and the drawing (docs/method.md#symbols).
 enum class Region : std::uint8_t {
   background,  ///< A: neither hand nor drawing
-  beside,      ///< B: drawing beside the hand, which the fill darkens
+  beside,      ///< B: drawing beside the hand, which the fill darkens; not on the forearm
   unlit,       ///< C: hand without drawing, which the fill lights
   lit,         ///< D: hand with drawing
 };
@@ -53,9 +53,12 @@ struct Scene {
   renderer::Image<std::uint8_t> regions;
   std::array<std::size_t, kRegions> region_px{};  ///< number of pixels of each region
   renderer::Texture light_on_camera;  ///< the light over the image, alpha 0: dark; may be empty
-  renderer::Texture light;            ///< the image of the projector; empty: there is none
-  std::uint64_t light_id = 0;         ///< frame_id of the projector
-  std::vector<std::string> missing;   ///< sentences: what is not shown, and why
+  /// The image of the projector, as bright as its light; empty: there is none.
+  renderer::Texture light;
+  double brightness = 1;             ///< projector.brightness, which `light` contains
+  std::uint64_t light_id = 0;        ///< frame_id of the projector
+  bool is_down = false;              ///< the rig is down: there is no light
+  std::vector<std::string> missing;  ///< sentences: what is not shown, and why
 };
 
 /// A time of a message, limited to the first 100 years of the clock: differences of such times do

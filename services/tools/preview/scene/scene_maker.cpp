@@ -11,6 +11,7 @@
 #include "calib/sub_frames.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "ipc/msg/same_calibration.hpp"
+#include "renderer/mask/hint.hpp"
 #include "renderer/predict/projected_pose.hpp"
 
 namespace handcast::preview {
@@ -21,7 +22,8 @@ Result<World> load_world(const config::Rig& rig) {
   World world{.calibration = *calibration,
               .mask = rig.cascade.mask,
               .predict = rig.cascade.predict,
-              .hands = {}};
+              .hands = {},
+              .brightness = rig.projector.brightness};
   for (const auto& [side, file] :
        {std::pair{msg::Side::left, rig.hand.left}, std::pair{msg::Side::right, rig.hand.right}}) {
     auto mesh = renderer::load_hand_or_default(file, side);
@@ -126,6 +128,23 @@ Region region_of(bool is_hand, bool is_drawn) {
 }
 static_assert(static_cast<int>(Region::lit) == 3 && static_cast<int>(Region::unlit) == 2);
 
+float across(const ForearmCut& cut, glm::vec2 px) {
+  const auto from = px - cut.wrist;
+  return std::abs(from.y * cut.to_elbow.x - from.x * cut.to_elbow.y);
+}
+
+/// Empty if the hand is outside the image.
+std::optional<ForearmCut> cut_of(const World& world, const renderer::HandMask::Sought& hand) {
+  const auto owned = renderer::make_hint(world.calibration, world.mask, *hand.then, hand.offset_px,
+                                         hand.has_landmarks);
+  if (!owned) return std::nullopt;
+  constexpr float kSkin_px = 24;  // from the joints to the edge of the drawn hand
+  ForearmCut cut{owned->hint.wrist_px, owned->hint.to_elbow};
+  for (const auto joint : owned->seeds_px)
+    cut.half_width = std::max(cut.half_width, across(cut, joint) + kSkin_px);
+  return cut;
+}
+
 }  // namespace
 
 SceneMaker::SceneMaker(std::optional<World> world) : world_(std::move(world)) {
@@ -180,10 +199,18 @@ void SceneMaker::find_mask(const msg::CameraFrame& frame) {
     const auto offset_px = hands_->offset_at(side, image.origin_ns);
     sought.push_back(
         {side, posed, offset_px.value_or(renderer::LandmarkPoints{}), offset_px.has_value()});
+    if (const auto cut = cut_of(*world_, sought.back())) cuts_.push_back(*cut);
   }
   if (sought.empty()) return;
   mask_->find(image, sought);
   hand_px_ = mask_->silhouette(image).mask;
+}
+
+/// True for what the mask takes for an arm: the drawn hand reaches farther than the mask.
+bool SceneMaker::is_forearm(glm::vec2 px) const {
+  return std::ranges::any_of(cuts_, [px](const ForearmCut& cut) {
+    return glm::dot(px - cut.wrist, cut.to_elbow) > 0 && across(cut, px) < cut.half_width;
+  });
 }
 
 void SceneMaker::add_light(const msg::Projection& projection, const std::vector<Motion>& motions,
@@ -202,8 +229,9 @@ void SceneMaker::add_light(const msg::Projection& projection, const std::vector<
       const auto lit_px = (*from_camera_)(then);
       scene.light_on_camera.at(x, y) = pixel_at(scene.light, lit_px, 0u);
       if (!hand_px_.data) continue;
-      const auto region =
-          region_of(hand_px_.at(x, y) != 0, pixel_at(covered, lit_px, std::uint8_t{0}) != 0);
+      const bool is_hand = hand_px_.at(x, y) != 0;
+      const bool is_drawn = pixel_at(covered, lit_px, std::uint8_t{0}) != 0;
+      const auto region = region_of(is_hand, is_drawn && (is_hand || !is_forearm(px)));
       scene.regions.at(x, y) = static_cast<std::uint8_t>(region);
       ++scene.region_px[static_cast<std::size_t>(region)];
     }
@@ -227,6 +255,7 @@ void SceneMaker::add_drawing(const msg::Projection& projection, const std::vecto
 Scene SceneMaker::make(const msg::CameraFrame* frame, const msg::Projection* projection) {
   Scene scene;
   hand_px_ = {};
+  cuts_.clear();
   if (projection && !preview::is_sound(*projection)) {
     scene.missing.emplace_back("the light is left out: its size makes no sense");
     projection = nullptr;
@@ -236,7 +265,8 @@ Scene SceneMaker::make(const msg::CameraFrame* frame, const msg::Projection* pro
     frame = nullptr;
   }
   if (projection) {
-    scene.light = whole_light(*projection);
+    scene.brightness = world_ ? world_->brightness : 1;
+    scene.light = whole_light(*projection, scene.brightness);
     scene.light_id = projection->header.frame_id;
   }
   if (!frame) return scene;

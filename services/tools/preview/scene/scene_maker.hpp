@@ -17,6 +17,7 @@
 #include "renderer/base/similarity.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/mask/hand_mask.hpp"
+#include "renderer/output/light.hpp"
 #include "renderer/predict/hand_track.hpp"
 #include "services/tools/preview/scene/scene.hpp"
 
@@ -39,8 +40,9 @@ std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedH
                                                            const Meshes& meshes,
                                                            const calib::Calibration& calibration);
 
-/// The whole image of the projector, black and transparent outside of the lit region.
-renderer::Texture whole_light(const msg::Projection& projection);
+/// The whole image of the projector at a brightness 0..1, as levels of a screen: black and
+/// transparent outside of the lit region, and everywhere if the brightness is 0.
+renderer::Texture whole_light(const msg::Projection& projection, double brightness);
 
 /// The motion of the hands by the tracker, and the newest landmarks. One thread.
 class Hands {
@@ -84,6 +86,7 @@ struct World {
   config::Mask mask;                                     ///< settings of the mask
   config::Predict predict;                               ///< settings of the prediction
   std::array<renderer::HandMesh, msg::kMaxHands> hands;  ///< by side
+  double brightness = 1;                                 ///< projector.brightness
 };
 
 /// Reads the files that a rig names. Errors: bad_config.
@@ -103,6 +106,13 @@ class FromCamera {
  private:
   int columns_ = 0, rows_ = 0;
   std::vector<glm::vec2> table_;  ///< every 8th pixel of every 8th row; bilinear in between
+};
+
+/// Where the mask cuts a forearm off (renderer::HandHint), image px.
+struct ForearmCut {
+  glm::vec2 wrist;       ///< on the line of the cut
+  glm::vec2 to_elbow;    ///< unit
+  float half_width = 0;  ///< of the arm
 };
 
 /// Turns the messages of a rig into scenes. Messages come from rings, so no number in them is
@@ -139,6 +149,7 @@ class SceneMaker {
   std::vector<Motion> motions(const Scene& scene, std::int64_t image_ns,
                               std::int64_t light_ns) const;
   void find_mask(const msg::CameraFrame& frame);
+  bool is_forearm(glm::vec2 px) const;
   void add_light(const msg::Projection& projection, const std::vector<Motion>& motions,
                  Scene& scene);
   void add_drawing(const msg::Projection& projection, const std::vector<Motion>& motions,
@@ -148,7 +159,8 @@ class SceneMaker {
   std::optional<Hands> hands_;
   std::optional<renderer::HandMask> mask_;
   std::optional<FromCamera> from_camera_;
-  renderer::GreyView hand_px_;  ///< the mask of the image that is shown; null: none
+  renderer::GreyView hand_px_;    ///< the mask of the image that is shown; null: none
+  std::vector<ForearmCut> cuts_;  ///< of the hands in it
 };
 
 }  // namespace handcast::preview

@@ -155,6 +155,23 @@ TEST(Layout, AnyContentsAtAnySizeGivesAPictureOfThatSize) {
     }
 }
 
+TEST(Layout, ARigThatIsDownIsDarkAndSaysSo) {
+  Scene lit;
+  lit.light = renderer::Texture(kSide_px, kSide_px, 0xffffffffu);
+  auto down = lit;
+  down.is_down = true;
+  const auto white = [](const Scene& scene) {
+    const auto picture = draw(scene, {}, {.width_px = 1600, .height_px = 900});
+    return std::ranges::count(picture.pixels(), 0xffffffffu);
+  };
+  EXPECT_GT(white(lit), 100'000);
+  EXPECT_LT(white(down), 1000) << "marks of the legend";
+}
+
+TEST(Layers, ThePictureOnTheHandIsNotHiddenByDefault) {
+  EXPECT_EQ(default_layers(), *parse_layers("image,light"));
+}
+
 TEST(Layout, AHalfSizedPictureIsTheSamePictureMadeSmaller) {
   const auto large = draw({}, {}, {.width_px = 1400, .height_px = 780}),
              small = draw({}, {}, {.width_px = 700, .height_px = 390});

@@ -48,6 +48,16 @@ TEST(Regions, HandAndDrawingMakeFour) {
       << "the drawing";
 }
 
+TEST(Regions, TheDrawnForearmIsNotBesideTheHand) {
+  StillHand hand;
+  hand.draw({320, 150}, {450, 300});
+  const auto scene = hand.maker.make(&*hand.image, &*hand.cast);
+  EXPECT_EQ(at(scene, 345, 165), Region::background) << "the forearm, above the wrist";
+  EXPECT_EQ(at(scene, 440, 280), Region::beside) << "drawn, but neither hand nor forearm";
+  EXPECT_EQ(at(scene, 360, 280), Region::lit);
+  EXPECT_LT(scene.region_px[1], 30u * 150u + 20u * 100u) << "less than all that is drawn beside it";
+}
+
 TEST(Regions, TheDrawingIsShownAtTheTimeOfTheImage) {
   SceneMaker maker(world());
   for (int i = 0; i <= 6; ++i)

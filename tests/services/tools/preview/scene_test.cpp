@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "tests/services/tools/preview/scenes.hpp"
 
 namespace handcast::preview {
@@ -79,6 +81,18 @@ TEST(Scene, ARigWithoutHandsShowsImageAndLight) {
   EXPECT_THAT(scene.drawing, IsEmpty());
   EXPECT_EQ(scene.regions.width(), 0) << "no hand is expected, so there is no mask";
   EXPECT_THAT(scene.missing, IsEmpty());
+}
+
+TEST(Scene, TheLightIsAsBrightAsTheProjectorMakesIt) {
+  auto dim = world();
+  dim.brightness = 0.5;
+  EXPECT_EQ(SceneMaker(dim).make(nullptr, &*light()).light.at(120, 120), 0xff00bc00u)
+      << "half of the light is the level 188";
+  dim.brightness = 0;
+  const auto dark = SceneMaker(dim).make(&*frame(), &*light());
+  EXPECT_TRUE(std::ranges::all_of(dark.light.pixels(), [](auto pixel) { return pixel == 0; }));
+  EXPECT_TRUE(
+      std::ranges::all_of(dark.light_on_camera.pixels(), [](auto pixel) { return pixel == 0; }));
 }
 
 TEST(Scene, BeforeTheFirstMessageItIsEmpty) {

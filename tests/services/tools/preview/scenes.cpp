@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <glm/gtc/matrix_inverse.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 namespace handcast::preview::test {
 
@@ -74,6 +75,10 @@ msg::HandPoses poses(std::int64_t origin_ns, glm::dvec2 image_px) {
                        static_cast<float>(at.z)},
         .radius_m = 0.01f};
   }
+  // The wrist is the uppermost joint: its forearm points up in the image.
+  const auto up = glm::inverse(glm::dmat3(calibration.camera_from_tracker)) * glm::dvec3(0, -1, 0);
+  const glm::quat turn(glm::vec3(0, 0, 1), glm::vec3(glm::normalize(up)));
+  poses.hands[0].joints[1].orientation_xyzw = {turn.x, turn.y, turn.z, turn.w};
   return poses;
 }
 
