@@ -28,7 +28,8 @@ Cover cover_of(const Observations& o, const TrackerPose& pose, const std::vector
       std::ranges::count_if(squares, [](const auto& s) { return s.second >= kLeast; });
   const double area_px2 = static_cast<double>(o.camera.width_px) * o.camera.height_px;
   return {static_cast<double>(full) * kSquare_px * kSquare_px / area_px2,
-          percentile_of(depths_m, 0.98) - percentile_of(depths_m, 0.02)};
+          percentile_of(depths_m, 0.98) - percentile_of(depths_m, 0.02),
+          1000 * percentile_of(depths_m, 0.5) / o.camera.fx_px};
 }
 
 std::optional<MisfitRun> misfit_run(const Observations& o, const std::vector<bool>& inliers) {
@@ -132,20 +133,28 @@ namespace {
 /// The limits in the documentation of Quality.
 /// @{
 struct Limits {
-  double light_mm, inlier_share, held_out_px, image_share, depth_m;
+  double light_mm, inlier_share, held_out_px, held_out_mm, image_share, depth_m;
+
+  /// Landmarks of a hand are never quite the tracker's joints.
+  double held_out_px_of(const Evidence& evidence) const {
+    return evidence.is_hand && evidence.cover.mm_per_px > 0
+               ? std::max(held_out_px, held_out_mm / evidence.cover.mm_per_px)
+               : held_out_px;
+  }
 };
-constexpr Limits kGood{1, 0.6, 3, 0.15, 0.10}, kPoor{3, 0.4, 6, 0.08, 0.05};
+constexpr Limits kGood{1, 0.6, 3, 4, 0.15, 0.10}, kPoor{3, 0.4, 6, 8, 0.08, 0.05};
 constexpr double kGoodOffset_ms = 2, kPoorPlace_mm = 10;
 /// @}
 /// At the edge of the search for the clock offset.
 constexpr double kEdge_ms = 1000 * kSearch_s - 5;
 constexpr double kFlat_m = 0.005;
 
-bool within(const Limits& limits, const Cover& cover, const TrackerFit& fit) {
+bool within(const Limits& limits, const Evidence& evidence, const TrackerFit& fit) {
+  const auto& cover = evidence.cover;
   const double light_mm = std::ranges::max(fit.place_errors, {}, &PlaceError::light_mm).light_mm;
   return light_mm <= limits.light_mm && fit.inlier_share >= limits.inlier_share &&
-         fit.held_out.median_px <= limits.held_out_px && cover.image_share >= limits.image_share &&
-         cover.depth_m >= limits.depth_m;
+         fit.held_out.median_px <= limits.held_out_px_of(evidence) &&
+         cover.image_share >= limits.image_share && cover.depth_m >= limits.depth_m;
 }
 
 bool at_the_edge(const TrackerFit& fit) {
@@ -157,10 +166,10 @@ double largest_place_sd_mm(const TrackerFit& fit) {
 }
 
 Quality quality_of(const Evidence& evidence, const TrackerFit& fit) {
-  if (!within(kPoor, evidence.cover, fit) || largest_place_sd_mm(fit) > kPoorPlace_mm ||
+  if (!within(kPoor, evidence, fit) || largest_place_sd_mm(fit) > kPoorPlace_mm ||
       evidence.second_pose_rad || evidence.mirrored || at_the_edge(fit))
     return Quality::poor;
-  return within(kGood, evidence.cover, fit) && fit.clock_offset_ms.high <= kGoodOffset_ms
+  return within(kGood, evidence, fit) && fit.clock_offset_ms.high <= kGoodOffset_ms
              ? Quality::good
              : Quality::usable;
 }
@@ -223,12 +232,12 @@ void say_misfits(const Evidence& evidence, const TrackerFit& fit,
         : evidence.runs.empty()
             ? "reflections or false detections in the image, or a tracker that loses the hand"
             : "the hand was out of the tracker's reach for a while"));
-  if (fit.held_out.median_px > kGood.held_out_px)
+  if (fit.held_out.median_px > kGood.held_out_px_of(evidence))
     findings.push_back(
-        fmt::format("Sightings that took no part in the fit are off by {:.1f} px "
+        fmt::format("Sightings that took no part in the fit are off by {:.1f} px, {:.1f} mm there "
                     "(median): camera and tracker do not see the same points, or "
                     "the lens is not calibrated well.",
-                    fit.held_out.median_px));
+                    fit.held_out.median_px, fit.held_out.median_px * evidence.cover.mm_per_px));
   if (fit.clock_offset_ms.high > kGoodOffset_ms)
     findings.push_back(
         fmt::format("The offset of the clocks is known only to +-{:.1f} ms; move "

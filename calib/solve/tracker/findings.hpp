@@ -13,6 +13,7 @@ namespace handcast::calib {
 struct Cover {
   double image_share = 0;  ///< of 60 px squares of the image that hold at least 3 points
   double depth_m = 0;      ///< between the 2nd and the 98th percentile
+  double mm_per_px = 0;    ///< at the median depth
 };
 Cover cover_of(const Observations& observations, const TrackerPose& pose,
                const std::vector<bool>& inliers);
@@ -28,6 +29,7 @@ std::optional<MisfitRun> misfit_run(const Observations& observations,
 /// What was found out about a fit besides its figures.
 struct Evidence {
   Cover cover;
+  bool is_hand = false;                     ///< the points are landmarks of a hand
   std::vector<MisfitRun> runs;              ///< left out
   std::optional<double> second_pose_rad;    ///< how far another pose is that fits nearly as well
   std::optional<std::string> other_finger;  ///< a sentence

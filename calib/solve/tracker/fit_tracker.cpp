@@ -197,6 +197,7 @@ Result<TrackerFit> fit_tracker(const CameraModel& camera, std::span<const Tracke
   const auto inliers = inliers_of(kept, refined);
   const auto uncertainty = uncertainty_of(kept, refined);
   evidence.cover = cover_of(kept, refined.pose, inliers);
+  evidence.is_hand = kept.track.points() > 1;
   evidence.plane_m = extent_of(kept).axes_m.z;
   evidence.limit_shift_mm = uncertainty.limit_shift_mm;
   evidence.unusable_sightings = observed->unusable_sightings;

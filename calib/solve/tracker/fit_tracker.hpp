@@ -49,11 +49,12 @@ struct PlaceError {
 
 /// What a fit is good for. Good: light lands within 2 mm at the corners of the observed volume
 /// (standard deviation 1 mm), the clock offset is known to 2 ms (95 %), 60 % of the sightings fit,
-/// held-out sightings are off by at most 3 px in the median, and the points cover 15 % of the image
-/// and 10 cm of depth. Poor: the standard deviation of light exceeds 3 mm, that of the camera's
+/// held-out sightings are off by at most 3 px in the median (4 mm on a hand, whose landmarks are
+/// never quite the tracker's joints, if that is more), and the points cover 15 % of the image and
+/// 10 cm of depth. Poor: the standard deviation of light exceeds 3 mm, that of the camera's
 /// place exceeds 10 mm along any axis, fewer than 40 % fit, held-out sightings are off by more than
-/// 6 px, the points cover less than 8 % of the image or 5 cm of depth, or a second pose, a mirrored
-/// hand or an offset at the edge of the search is possible. Usable: all else.
+/// 6 px (8 mm on a hand), the points cover less than 8 % of the image or 5 cm of depth, or a second
+/// pose, a mirrored hand or an offset at the edge of the search is possible. Usable: all else.
 enum class Quality { good, usable, poor };
 
 struct TrackerFit {

@@ -180,7 +180,8 @@ Result<Outcome> measure_tracker(Desk& desk) {
   Outcome outcome{made_of(*found), found->quality != calib::Quality::poor, found->findings};
   outcome.meaning =
       "Held out: how far landmarks are from the tracker's joints in a part of the time that the "
-      "fit has not seen, median; good is at most 3 px. Repeatable: how far light lands beside its "
+      "fit has not seen, median; good is at most 3 px, or 4 mm on a hand. Repeatable: how far "
+      "light lands beside its "
       "target because of what the fit does not know, two standard deviations; good is at most "
       "2 mm. Clock: how much the tracker's is ahead of the camera's";
   const auto& camera = desk.draft.camera;
