@@ -57,7 +57,8 @@ Result<void> RigPresence::same_ring() const {
   if (!other) return {};
   return fail(
       Errc::disconnected,
-      fmt::format("rig '{}' has been started anew; open its stream '{}' again", rig_, stream_));
+      fmt::format("rig '{}' was stopped and started anew meanwhile; call this command again",
+                  rig_));
 }
 
 }  // namespace handcast::client
