@@ -167,9 +167,7 @@ Off off_of(const calib::Calibration& used, const calib::DepthView& view) {
     depths_m.push_back(depth_m);
   }
   if (off_px.empty()) return {};
-  return {median(off_px),
-          median(depths_m),
-          {median(right_px), median(down_px)}};
+  return {median(off_px), median(depths_m), {median(right_px), median(down_px)}};
 }
 
 /// "0.3 px to the left, 1.2 px down", for what does not round to zero.

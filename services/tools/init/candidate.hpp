@@ -42,8 +42,8 @@ std::size_t likely_light(std::span<const Candidate> lights);
 /// those that can be meant.
 Result<std::size_t> find(std::span<const Candidate> candidates, std::string_view answer);
 
-/// A device that is not attached yet, by an answer "BACKEND:NAME" with one of the back ends; nullopt
-/// if it is none. What it can do is not known.
+/// A device that is not attached yet, by an answer "BACKEND:NAME" with one of the back ends;
+/// nullopt if it is none. What it can do is not known.
 std::optional<Candidate> not_attached(std::string_view answer,
                                       std::span<const std::string_view> backends);
 

@@ -33,8 +33,8 @@ Question choice(const std::string& flag, const std::string& text,
     const auto found = find(candidates, answer);
     if (found) return chosen = candidates[*found], Result<void>();
     const auto backends = flag == "--camera" ? kCameraBackends : kLightBackends;
-    auto later = found.error().code == Errc::unavailable ? not_attached(answer, backends)
-                                                         : std::nullopt;
+    auto later =
+        found.error().code == Errc::unavailable ? not_attached(answer, backends) : std::nullopt;
     if (later) return chosen = std::move(*later), Result<void>();
     return fail(found.error().code,
                 fmt::format("{}; {}:NAME or {}:NAME is one that is not attached yet",
