@@ -9,7 +9,7 @@ import re
 import statistics
 
 SHOW_LINES = 60_000
-SHOW_FILES = 650
+SHOW_FILES = 690
 MEDIAN_LINES = 64  # of a source, at least: a file is a subject, not a function. The aim is 70.
 FOLDED_LINES = 300  # a header with one user is part of it, unless the file becomes longer than this
 UNFOLDED_HEADERS = 3  # the most that may be left to fold. The aim is none.
