@@ -187,7 +187,8 @@ void Choice::add_findings(ScreenFit& fit) const {
   medians_px.reserve(static_cast<std::size_t>(views_));
   for (int view = 0; view < views_; ++view)
     medians_px.push_back(errors_of(fit.model, inliers_.of_view(view)).median);
-  const double usual_px = median(medians_px);
+  // The lower one of two, since one of four views may be wrong.
+  const double usual_px = ranked(medians_px, (medians_px.size() - 1) / 2);
   for (int view = 0; view < views_; ++view)
     if (const double off_px = medians_px[static_cast<std::size_t>(view)];
         off_px > kMuchWorse * usual_px + kMuchWorse_px)
