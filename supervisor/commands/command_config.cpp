@@ -84,11 +84,17 @@ Result<CheckOutcome> run_and_read(const std::vector<std::string>& command, doubl
   return outcome;
 }
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
+/// The faults in a text, one a line. A line that is indented belongs to the fault before it: the
+/// faulty line of a file, and the caret below.
+std::vector<std::string> split_faults(const std::string& text) {
+  std::vector<std::string> faults;
   std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
+  for (std::string line; std::getline(stream, line);)
+    if (line.starts_with("    ") && !faults.empty())
+      faults.back() += '\n' + line;
+    else
+      faults.push_back(line);
+  return faults;
 }
 
 /// The faults that the program of a service finds.
@@ -105,7 +111,7 @@ std::vector<std::string> ask(const ServiceSpec& spec, const std::filesystem::pat
   if (outcome->exit_code == kExitDone)
     return {service +
             ": its check ended before it was done; a library that the rig names may be broken"};
-  auto faults = lines_of(outcome->output);
+  auto faults = split_faults(outcome->output);
   if (outcome->signal != 0)
     faults.push_back(
         fmt::format("{}: its check was ended by a signal ({}); a library that the rig "

@@ -76,7 +76,11 @@ std::vector<Finding> judge_check(int exit_code, const std::string& complaints) {
   std::string line;
   std::getline(lines, line);  // "handcast: FILE:"
   while (std::getline(lines, line))
-    findings.push_back({"start", Grade::fault, line, "`handcast up` refuses it; correct the file"});
+    if (line.starts_with("    ") && !findings.empty())  // a line of the file, and its caret
+      findings.back().sentence += '\n' + line;
+    else
+      findings.push_back(
+          {"start", Grade::fault, line, "`handcast up` refuses it; correct the file"});
   if (findings.empty())
     findings.push_back({"start", Grade::fault, complaints, "`handcast config --check`"});
   return findings;

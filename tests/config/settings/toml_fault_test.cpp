@@ -154,7 +154,7 @@ TEST(TomlFault, AnythingIsAnsweredWithinTheText) {
   const std::string pieces[] = {"a", "=", "\"", "'", "[", "]", "\\",     "#",  ".", ",",
                                 " ", "1", "\n", "{", "}", ":", "\u201c", "\t", "-", "%"};
   std::uint32_t random = 1;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < 4'000; ++i) {
     std::string toml;
     for (int k = 0; k < 12; ++k) {
       random = random * 1664525u + 1013904223u;

@@ -285,6 +285,10 @@ TEST(Start, WhatUpWouldRefuseIsAFaultEach) {
   EXPECT_EQ(findings[0].sentence, "camera: no such folder");
   EXPECT_TRUE(has_fault(findings));
   EXPECT_TRUE(has_fault(judge_check(100, "")));
+  const auto with_line = judge_check(100, "handcast: r.toml:\nc.toml:1:5: text needs quotes\n"
+                                          "    a = b\n        ^\nsecond\n");
+  ASSERT_EQ(with_line.size(), 2u);
+  EXPECT_EQ(with_line[0].sentence, "c.toml:1:5: text needs quotes\n    a = b\n        ^");
 }
 
 TEST(Findings, ArePrintedWithTheirRemediesAndCounted) {
