@@ -86,7 +86,7 @@ ChartMap::ChartMap(const HandMesh& hand, int width, int height)
   for (const auto& triangle : hand.triangles) draw_triangle(hand, triangle);
   std::array<double, 256> outwards{};
   for (std::size_t v = 0; v < hand.vertex_count(); ++v)
-    outwards[hand.chart[v]] += hand.normals[v].y;
+    outwards[hand.chart[v]] += glm::dot(hand.normals[v], glm::vec3(hand.rest[1][1]));
   for (std::size_t chart = 0; chart < outwards.size(); ++chart)
     facing_[chart] = outwards[chart] < 0 ? -1.f : 1.f;
   measure_edges();
@@ -122,6 +122,7 @@ void ChartMap::draw_triangle(const HandMesh& hand, const std::array<std::uint16_
       glm::vec3 rest_mm{0};
       for (int k = 0; k < 3; ++k)
         rest_mm += 1000.f * static_cast<float>(part[k]) * hand.positions[corners[k]];
+      rest_mm = in_wrist_mm(hand, rest_mm);
       texels_.at(x, y) = {chart, shares.strongest(part), kEdgeReach, {rest_mm.x, rest_mm.z}};
       on_.at(x, y) = 1;
       off_.at(x, y) = 0;

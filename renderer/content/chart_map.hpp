@@ -8,12 +8,18 @@
 
 namespace handcast::renderer {
 
+/// A place of a hand at rest in the axes of its wrist: x to the right and z to the arm, seen from
+/// the back, however the model lies.
+inline glm::vec3 in_wrist_mm(const HandMesh& hand, const glm::vec3& place_mm) {
+  return glm::transpose(glm::mat3(hand.rest[1])) * (place_mm - 1000.f * glm::vec3(hand.rest[1][3]));
+}
+
 /// The part of the hand at the centre of a texel.
 struct ChartTexel {
   std::uint8_t chart = 0;    ///< 0: none
   std::uint8_t joint = 0;    ///< the joint with the largest skin weight
   std::uint8_t edge_px = 0;  ///< distance to the outline of the chart, at most ChartMap::kEdgeReach
-  glm::vec2 rest_mm{};       ///< position on the hand at rest, x and z of HandMesh
+  glm::vec2 rest_mm{};       ///< position on the hand at rest, in_wrist_mm()
 };
 
 /// The charts of a hand, drawn into a texture.

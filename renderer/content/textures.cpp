@@ -148,7 +148,7 @@ class Skeleton {
  public:
   explicit Skeleton(const HandMesh& hand) {
     for (int joint = 0; joint < kJoints; ++joint)
-      joints_mm_[joint] = 1000.f * glm::vec2(hand.rest[joint][3].x, hand.rest[joint][3].z);
+      joints_mm_[joint] = xz_of(in_wrist_mm(hand, 1000.f * glm::vec3(hand.rest[joint][3])));
   }
 
   Colour operator()(const ChartTexel& texel) const {
@@ -166,6 +166,7 @@ class Skeleton {
   }
 
  private:
+  static glm::vec2 xz_of(const glm::vec3& place) { return {place.x, place.z}; }
   static float distance_to_segment(glm::vec2 p, glm::vec2 a, glm::vec2 b) {
     const glm::vec2 along = b - a;
     const float length2 = std::max(glm::dot(along, along), 1e-6f);

@@ -85,36 +85,30 @@ std::vector<glm::mat3> quarter_turns() {
   return turns;
 }
 
-/// The mean angle between the axes of the phalanges, turned by `turn`, and those by their places.
-float mean_angle_deg(const JointFrames& rest, const glm::mat3& turn, const Axes& by_places) {
-  float sum = 0;
-  int count = 0;
+/// How far the axes of the phalanges are from those by their places, mean angles in degrees.
+struct Difference {
+  float axes_deg = 0;   ///< of all axes
+  float bones_deg = 0;  ///< of the directions of the bones
+
+  bool is_none() const { return bones_deg < 8 && axes_deg < 40; }
+};
+
+Difference difference(const JointFrames& rest, const glm::mat3& turn, const Axes& by_places) {
+  Difference mean;
+  float count = 0;
   for (int joint = 0; joint < kJoints; ++joint) {
     if (!is_phalanx(joint)) continue;
-    sum += angle_deg(glm::mat3(rest[joint]) * turn, by_places[joint]);
+    const auto axes = glm::mat3(rest[joint]) * turn;
+    const float cosine = std::clamp(glm::dot(axes[2], by_places[joint][2]), -1.f, 1.f);
+    mean.axes_deg += angle_deg(axes, by_places[joint]);
+    mean.bones_deg += glm::degrees(std::acos(cosine));
     ++count;
   }
-  return sum / static_cast<float>(count);
+  return {mean.axes_deg / count, mean.bones_deg / count};
 }
 
 void set_axes(glm::mat4& frame, const glm::mat3& axes) {
   for (int k = 0; k < 3; ++k) frame[k] = glm::vec4(axes[k], 0);
-}
-
-/// Turns the model about its wrist so that the wrist's axes are those of HandMesh.
-bool turn_upright(HandMesh& hand, const glm::mat3& wrist) {
-  constexpr float kUpright_deg = 20;
-  if (angle_deg(wrist, glm::mat3(1)) < kUpright_deg) return false;
-  const auto turn = glm::transpose(wrist);
-  const auto centre = place_of(hand.rest, kWrist);
-  for (auto& position : hand.positions) position = turn * (position - centre) + centre;
-  for (auto& normal : hand.normals) normal = turn * normal;
-  for (auto& frame : hand.rest) {
-    const auto place = turn * (glm::vec3(frame[3]) - centre) + centre;
-    set_axes(frame, turn * glm::mat3(frame));
-    frame[3] = glm::vec4(place, 1);
-  }
-  return true;
 }
 
 /// The distance to the bone that begins at a joint.
@@ -179,32 +173,27 @@ std::optional<Side> side_of_joints(const JointFrames& rest) {
 }
 
 std::string settle_axes(HandMesh& hand, const FoundJoints& found) {
-  constexpr float kGood_deg = 30, kOdd_deg = 60;
+  constexpr float kOdd_deg = 75;  // the thumb of WebXR's hands is rolled by 54
   const auto by_places = axes_of_places(hand.rest, hand.side);
   const auto turns = quarter_turns();
   const auto off_deg = [&](const glm::mat3& turn) {
-    return mean_angle_deg(hand.rest, turn, by_places);
+    return difference(hand.rest, turn, by_places).axes_deg;
   };
-  const auto best = off_deg(turns.front()) < kGood_deg
+  const auto turn = difference(hand.rest, turns.front(), by_places).is_none()
                         ? turns.begin()
                         : std::ranges::min_element(turns, {}, off_deg);
-  const bool fits = off_deg(*best) < kGood_deg;
+  const bool fits = difference(hand.rest, *turn, by_places).is_none(),
+             is_turned = turn != turns.begin();
+  bool is_odd = false;
   for (int joint = 0; joint < kJoints; ++joint) {
-    const auto turned = glm::mat3(hand.rest[joint]) * *best;
+    if (!found[joint]) continue;
+    const auto turned = glm::mat3(hand.rest[joint]) * *turn;
     const bool keeps = fits && angle_deg(turned, by_places[joint]) < kOdd_deg;
-    if (found[joint] && (!keeps || best != turns.begin()))
-      set_axes(hand.rest[joint], keeps ? turned : by_places[joint]);
+    is_odd = is_odd || !keeps;
+    if (!keeps || is_turned) set_axes(hand.rest[joint], keeps ? turned : by_places[joint]);
   }
-  std::string done;
-  if (!fits)
-    done = "the axes of its joints are taken from the places of the joints";
-  else if (best != turns.begin())
-    done = "the axes of its joints are turned: -z is to lie along the bones";
-  if (turn_upright(hand, by_places[kWrist])) {
-    if (!done.empty()) done += ", and ";
-    done += "it is turned: -z is to lead to the fingers and +y out of the back";
-  }
-  return done;
+  if (fits && is_turned) return "the axes of its joints are turned so that -z lies along the bones";
+  return is_odd ? "axes of its joints are taken from the places of the joints" : "";
 }
 
 std::string fault_when_bent(const HandMesh& hand) {

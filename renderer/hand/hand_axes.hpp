@@ -18,11 +18,10 @@ bool has_palm(const JointFrames& rest);
 /// all joints lie in a plane.
 std::optional<Side> side_of_joints(const JointFrames& rest);
 
-/// Gives HandMesh::rest the axes of OpenXR (-z along the bone, +y out of the back), and turns the
-/// model so that its wrist has those of HandMesh. Axes that differ from the bones by a common turn
-/// (Blender's bones lie along +y) are turned back; others are taken from the bones and the palm.
-/// Axes that fit are left alone. Returns what was done, as the end of a sentence ("… of the model
-/// are …"); empty: nothing.
+/// Gives HandMesh::rest the axes of OpenXR: -z along the bone, +y out of the back. Axes that fit
+/// the bones are left alone. Those that differ from them by a common turn (Blender's bones lie
+/// along +y) are turned back; others are taken from the bones and the palm. Returns what was done,
+/// a sentence without its full stop; empty: nothing.
 std::string settle_axes(HandMesh& hand, const FoundJoints& found);
 
 /// Bends all fingers: why the mesh does not look like a hand then. Empty if it does.

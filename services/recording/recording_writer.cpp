@@ -122,6 +122,9 @@ Result<RecordingWriter> RecordingWriter::create(const fs::path& folder, const Ab
   if (!about.calibration.empty())
     if (auto kept = write_whole(folder / kCalibrationFile, about.calibration); !kept)
       return tl::make_unexpected(kept.error());
+  for (const auto& [name, contents] : about.files)
+    if (auto kept = write_whole(folder / name, contents); !kept)
+      return tl::make_unexpected(kept.error());
   if (auto said = write_whole(folder / kAboutFile, about_text(about.rig, streams)); !said)
     return tl::make_unexpected(said.error());
   std::vector<Stream> all;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,6 +52,7 @@ class RecordingWriter {
     std::string rig;          ///< name of the rig
     std::string rig_file;     ///< its settings as TOML; kept in rig.toml
     std::string calibration;  ///< the calibration file, kept in kCalibrationFile; empty: unknown
+    std::map<std::string, std::string> files;  ///< others that rig_file names: contents by name
   };
 
   /// Creates the folder, or takes an empty one, and the files of `streams`, whose names are those

@@ -34,6 +34,13 @@ struct Layout {
   std::size_t number_bytes() const { return type[2] == '4' ? 4 : 8; }
 };
 
+/// The line of numpy that writes the array as it is read; the end of a sentence.
+std::string remedy(const path& file, std::string_view type) {
+  const auto name = file.filename().string();
+  return fmt::format("; in Python, numpy.save('{0}', numpy.load('{0}').astype('{1}', order='C'))",
+                     name, type);
+}
+
 tl::unexpected<Error> damaged(const path& file, std::string_view what) {
   return fail(Errc::bad_data, fmt::format("{}: {}", file.string(), what));
 }
@@ -78,7 +85,11 @@ constexpr std::array<std::string_view, 1> kBytes{"|u1"};
 Result<Layout> parse_layout(const path& file, std::string_view bytes,
                             std::span<const std::string_view> types) {
   if (bytes.size() < 12 || bytes.substr(0, 6) != kMagic)
-    return damaged(file, "not a NumPy array file");
+    return damaged(file, bytes.starts_with("MATLAB")
+                             ? fmt::format("a file of MATLAB; in Python, numpy.save('{}.npy', "
+                                           "scipy.io.loadmat('{}')['the name of the array'])",
+                                           file.stem().string(), file.filename().string())
+                             : "not a NumPy array file");
   const auto byte = [&](std::size_t i) {
     return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i]));
   };
@@ -96,13 +107,14 @@ Result<Layout> parse_layout(const path& file, std::string_view bytes,
   layout.data_offset = start + length;
   const std::string_view type = value_of(header, "descr");
   if (type.size() < 5 || type[0] != '\'' || type[4] != '\'')
-    return damaged(file, "the header has no plain number type");
+    return damaged(file, "the header has no plain number type; save one array of numbers");
   layout.type = type.substr(1, 3);
   if (std::ranges::find(types, layout.type) == types.end())
-    return damaged(file, fmt::format("the array holds {}; '{}' {} supported", quote(layout.type),
-                                     join(types, "', '"), types.size() > 1 ? "are" : "is"));
+    return damaged(file, fmt::format("the array holds {}; '{}' {} supported{}", quote(layout.type),
+                                     join(types, "', '"), types.size() > 1 ? "are" : "is",
+                                     types.size() > 1 ? remedy(file, "<f8") : std::string()));
   if (!value_of(header, "fortran_order").starts_with("False"))
-    return damaged(file, "the array is not in C order");
+    return damaged(file, "the array is not in C order" + remedy(file, layout.type));
   if (!parse_shape(value_of(header, "shape"), layout.shape))
     return damaged(file, "the header has no valid shape");
   return layout;

@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <span>
 
+#include "ipc/base/log.hpp"
 #include "services/joints/conventions.hpp"
 #include "services/joints/leap_hand.hpp"
 #include "services/recording/arrays/recorded_hands_checks.hpp"
@@ -38,20 +39,53 @@ std::string text_of(const std::vector<std::size_t>& shape) {
   return text + ")";
 }
 
+/// The lines of numpy that leave out the samples of a hand that was lost; the end of a sentence.
+std::string left_out(const path& file) {
+  const auto name = file.stem().string();
+  const auto side = name.substr(name.rfind('_') + 1);
+  return fmt::format(
+      "; leave out the samples in which the hand was lost: j = numpy.load('joints_{0}.npy'); b = "
+      "numpy.load('bones_{0}.npy'); ok = numpy.isfinite(j).all((1, 2)) & j.any((1, 2)) & "
+      "numpy.isfinite(b).all((1, 2, 3)); numpy.save('joints_{0}.npy', j[ok]); "
+      "numpy.save('bones_{0}.npy', b[ok]); numpy.save('timestamps.npy', "
+      "numpy.load('timestamps.npy')[ok])",
+      side);
+}
+
+/// The line of numpy that gives an array its shape; the end of a sentence. Empty if none can.
+std::string reshaped(const path& file, const std::vector<std::size_t>& is,
+                     const std::vector<std::size_t>& wanted) {
+  const auto count_of = [](const auto& shape) {
+    std::size_t count = 1;
+    for (const auto extent : shape) count *= extent;
+    return count;
+  };
+  if (count_of(is) != count_of(wanted)) return {};
+  const auto name = file.filename().string();
+  const bool ends_with_samples = is.size() == wanted.size() && is.back() == wanted.front();
+  return fmt::format("; in Python, numpy.save('{0}', {1})", name,
+                     ends_with_samples
+                         ? fmt::format("numpy.moveaxis(numpy.load('{}'), -1, 0).copy()", name)
+                         : fmt::format("numpy.load('{}').reshape{}", name, text_of(wanted)));
+}
+
+/// An array of samples without a number that is not finite.
 Result<Npy> read_shaped(const path& file, const std::vector<std::size_t>& shape) {
   auto opened = NpyFile::open(file);
   if (!opened) return tl::make_unexpected(opened.error());
   if (opened->shape() != shape)
-    return fail(Errc::bad_data,
-                fmt::format("{}: the array has shape {}, but must have shape {}", file.string(),
-                            text_of(opened->shape()), text_of(shape)));
+    return fail(Errc::bad_data, fmt::format("{}: the array has shape {}, but must have shape {}{}",
+                                            file.string(), text_of(opened->shape()), text_of(shape),
+                                            reshaped(file, opened->shape(), shape)));
   auto array = opened->read();
   if (!array) return array;
-  for (const double value : array->values)
-    if (!std::isfinite(value))
-      return fail(Errc::bad_data,
-                  fmt::format("{}: the array holds a value that is not finite", file.string()));
-  return array;
+  const auto odd =
+      std::ranges::find_if_not(array->values, [](double v) { return std::isfinite(v); });
+  if (odd == array->values.end()) return array;
+  const auto of_a_sample = static_cast<std::ptrdiff_t>(array->values.size() / shape.front());
+  return fail(Errc::bad_data,
+              fmt::format("{}: sample {} has a number that is not finite{}", file.string(),
+                          (odd - array->values.begin()) / of_a_sample, left_out(file)));
 }
 
 Result<void> remove_file(const path& file) {
@@ -96,8 +130,8 @@ Result<std::vector<msg::HandPose>> read_hand(const path& folder, std::size_t sid
                         &bones->values[i * kLeapBones * 16], joints::kMeanRadii_m);
     if (!pose)
       return fail(Errc::bad_data,
-                  fmt::format("{}: sample {} has {}", array_file(folder, "bones", side).string(), i,
-                              pose.error().what));
+                  fmt::format("{}: sample {} has {}{}", array_file(folder, "bones", side).string(),
+                              i, pose.error().what, left_out(array_file(folder, "bones", side))));
     poses.push_back(*pose);
   }
   if (const auto fault = fault_of_poses(poses, time_ns); !fault.empty())
@@ -160,7 +194,10 @@ Result<bool> is_there(const path& file) {
   return there;
 }
 
-Result<std::vector<std::int64_t>> read_stamps_ns(const path& file) {
+namespace {
+
+/// As read_stamps_ns(), but times may be equal.
+Result<std::vector<std::int64_t>> read_rising_ns(const path& file) {
   constexpr std::size_t kMostStamps = 10'000'000;  // 80 MB
   auto opened = NpyFile::open(file);
   if (!opened) return tl::make_unexpected(opened.error());
@@ -176,11 +213,39 @@ Result<std::vector<std::int64_t>> read_stamps_ns(const path& file) {
     const double whole_us = std::floor(time_us);
     const std::int64_t time_ns =
         static_cast<std::int64_t>(whole_us) * 1000 + std::llround((time_us - whole_us) * 1e3);
-    if (!times_ns.empty() && time_ns <= times_ns.back())
+    if (!times_ns.empty() && time_ns < times_ns.back())
       return fail(Errc::bad_data, fmt::format("{}: time {} is not later than the one before it",
                                               file.string(), times_ns.size()));
     times_ns.push_back(time_ns);
   }
+  return times_ns;
+}
+
+/// Leaves out the samples that have the time of the one before. Returns how many.
+std::size_t drop_repeated(RecordedHands& recording) {
+  std::vector<std::int64_t> times_ns;
+  std::array<std::vector<msg::HandPose>, 2> hands;
+  for (std::size_t i = 0; i < recording.time_ns.size(); ++i) {
+    if (!times_ns.empty() && recording.time_ns[i] == times_ns.back()) continue;
+    times_ns.push_back(recording.time_ns[i]);
+    for (std::size_t side = 0; side < hands.size(); ++side)
+      if (!recording.hands[side].empty()) hands[side].push_back(recording.hands[side][i]);
+  }
+  const auto dropped = recording.time_ns.size() - times_ns.size();
+  recording.time_ns = std::move(times_ns);
+  recording.hands = std::move(hands);
+  return dropped;
+}
+
+}  // namespace
+
+Result<std::vector<std::int64_t>> read_stamps_ns(const path& file) {
+  auto times_ns = read_rising_ns(file);
+  if (!times_ns) return times_ns;
+  const auto again = std::ranges::adjacent_find(*times_ns);
+  if (again != times_ns->end())
+    return fail(Errc::bad_data, fmt::format("{}: time {} is not later than the one before it",
+                                            file.string(), again - times_ns->begin() + 1));
   return times_ns;
 }
 
@@ -190,8 +255,9 @@ Result<std::vector<std::vector<std::int64_t>>> read_all_stamps_ns(const path& fo
     const auto there = is_there(folder / name);
     if (!there) return tl::make_unexpected(there.error());
     if (!*there) continue;
-    auto times_ns = read_stamps_ns(folder / name);
+    auto times_ns = read_rising_ns(folder / name);
     if (!times_ns) return tl::make_unexpected(times_ns.error());
+    times_ns->erase(std::unique(times_ns->begin(), times_ns->end()), times_ns->end());
     for (const auto& other_ns : all_ns)
       if (!times_ns->empty() && std::max(times_ns->front() - other_ns.back(),
                                          other_ns.front() - times_ns->back()) > kMostGap_ns)
@@ -216,7 +282,7 @@ Result<void> remove_recording(const path& folder) {
 Result<RecordedHands> read_recording(const path& folder) {
   constexpr std::size_t kMostPoses = 100'000;  // those of two hands take 800 MB
   const path stamps = folder / "timestamps.npy";
-  auto times_ns = read_stamps_ns(stamps);
+  auto times_ns = read_rising_ns(stamps);
   if (!times_ns) return tl::make_unexpected(times_ns.error());
   if (times_ns->size() < 2)
     return fail(Errc::bad_data,
@@ -242,6 +308,9 @@ Result<RecordedHands> read_recording(const path& folder) {
     return fail(
         Errc::bad_config,
         fmt::format("{}: there is neither joints_left.npy nor joints_right.npy", folder.string()));
+  if (const auto dropped = drop_repeated(recording); dropped > 0)
+    log::warning("{}: {} of {} samples have the time of the one before; they are left out",
+                 stamps.string(), dropped, recording.time_ns.size() + dropped);
   return recording;
 }
 

@@ -22,7 +22,8 @@ struct RecordedHands {
 };
 
 /// Reads timestamps.npy (us), joints_{left,right}.npy (n,42,3 mm) and bones_{left,right}.npy
-/// (n,22,4,4), all in Leap's layout. Errors: bad_config (a file is missing, or there is no hand),
+/// (n,22,4,4), all in Leap's layout. Of samples of one time all but the first are left out, with a
+/// warning. Errors: bad_config (a file is missing, or there is no hand),
 /// bad_data (a malformed file; fewer than two or more than 100,000 times; lengths or times that are
 /// not in the unit of the layout).
 Result<RecordedHands> read_recording(const std::filesystem::path& folder);

@@ -77,6 +77,10 @@ Result<void> write_landmarks(const std::filesystem::path& folder,
 }  // namespace
 
 Result<void> write_messages(const std::filesystem::path& folder, const SensorMessages& messages) {
+  std::error_code ignored;  // a folder that cannot be made is an error of the first file
+  std::filesystem::create_directories(folder, ignored);
+  if (auto saved = write_npy_i64(folder / "camera_timestamps.npy", messages.image_times_us); !saved)
+    return saved;
   RecordedHands recording;
   for (const auto& poses : recordable(messages.poses)) {
     recording.time_ns.push_back(poses.header.origin_ns);
@@ -91,8 +95,6 @@ Result<void> write_messages(const std::filesystem::path& folder, const SensorMes
   recording.first_ns = recording.time_ns.front();
   for (auto& time_ns : recording.time_ns) time_ns -= recording.first_ns;
   if (auto saved = write_recording(folder, recording); !saved) return saved;
-  if (auto saved = write_npy_i64(folder / "camera_timestamps.npy", messages.image_times_us); !saved)
-    return saved;
   return write_landmarks(folder, messages.landmarks);
 }
 

@@ -24,7 +24,8 @@ constexpr std::int64_t to_us(std::int64_t time_ns) { return (time_ns + 500) / 10
 /// bones_SIDE.npy; landmarks_timestamps.npy and landmarks_SIDE.npy (n,21,3: x, y and sigma in px; x
 /// and y are NaN if the landmark was not seen); camera_timestamps.npy. Times are in microseconds.
 /// All samples of a recording hold the same hands: those with other hands than most are left out.
-/// Errors: unavailable (a file cannot be written), bad_data (fewer than two samples of a hand).
+/// Errors: unavailable (a file cannot be written), bad_data (fewer than two samples of a hand; the
+/// times of the images are written all the same).
 Result<void> write_messages(const std::filesystem::path& folder, const SensorMessages& messages);
 
 }  // namespace handcast::recording

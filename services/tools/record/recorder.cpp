@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
+#include <map>
 #include <thread>
 #include <utility>
 
@@ -12,6 +14,7 @@
 #include "config/rig.hpp"
 #include "config/settings/frozen_file.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/input_file.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/client/rig_ring.hpp"
 #include "ipc/control/choose_rig.hpp"
@@ -148,20 +151,45 @@ Result<std::string> calibration_of(const config::Rig& rig) {
   return std::move(file->text);
 }
 
+/// Takes the pictures and hand models of a rig into its recording, so that another computer can
+/// play it. Those that cannot be taken stay where they are, with a warning.
+std::map<std::string, std::string> take_files(config::Rig& rig) {
+  std::map<std::string, std::string> files;
+  for (auto& [setting, name] :
+       {std::pair<std::string&, const char*>{rig.content.left, "content_left"},
+        {rig.content.right, "content_right"},
+        {rig.hand.left, "hand_left"},
+        {rig.hand.right, "hand_right"}}) {
+    if (setting.empty() || setting.starts_with("builtin:")) continue;
+    const auto ending = std::filesystem::path(setting).extension().string();
+    auto contents = read_input(setting, kMostMesh);
+    if (!contents || ending == ".gltf") {
+      log::warning("record: the recording does not contain '{}': {}", setting,
+                   contents ? "a .gltf file has its buffers elsewhere; convert it to .glb"
+                            : contents.error().what);
+      continue;
+    }
+    setting = name + ending;
+    files[setting] = std::move(*contents);
+  }
+  return files;
+}
+
 /// What a recording says of its rig. Without its settings, the images are recorded all the same.
 recording::RecordingWriter::About about_of(const std::string& name) {
   auto rig = settings_of(name);
   if (!rig) {
     log::warning("record: the recording has no settings and no calibration: {}", rig.error().what);
-    return {name, "# " + rig.error().what + "\n", ""};
+    return {name, "# " + rig.error().what + "\n", "", {}};
   }
+  auto files = take_files(*rig);
   auto calibration = calibration_of(*rig);
   if (!calibration) {
     log::warning("record: the recording has no calibration: {}", calibration.error().what);
-    return {name, config::print_rig(*rig), ""};
+    return {name, config::print_rig(*rig), "", std::move(files)};
   }
   rig->calibration = std::string(recording::kCalibrationFile);
-  return {name, config::print_rig(*rig), std::move(*calibration)};
+  return {name, config::print_rig(*rig), std::move(*calibration), std::move(files)};
 }
 
 Result<std::vector<std::unique_ptr<Feed>>> open_feeds(const std::string& rig,

@@ -359,19 +359,6 @@ TEST_F(HandFile, AxesThatFollowNoRuleAreTakenFromThePlacesOfTheJoints) {
   expect_mean_hand(load_hand(path("odd.glb"), Side::left), Side::left, kByPlaces_deg);
 }
 
-TEST_F(HandFile, AModelThatLiesOtherwiseIsTurned) {
-  HandMesh hand = mean_hand(Side::left);
-  const glm::mat4 turn{{0, 0, 1, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}};
-  for (auto& position : hand.positions) position = glm::mat3(turn) * position;
-  for (auto& normal : hand.normals) normal = glm::mat3(turn) * normal;
-  for (auto& frame : hand.rest) frame = turn * frame;
-  ASSERT_TRUE(save_hand(hand, path("odd.glb")));
-  const auto read = load_hand(path("odd.glb"), Side::left);
-  ASSERT_TRUE(read) << read.error().what;
-  EXPECT_LT(angle_deg(read->rest[1], glm::mat4(1)), kByPlaces_deg);
-  EXPECT_GT(read->normals[100].y * mean_hand(Side::left).normals[100].y, 0) << "its back is up";
-}
-
 /// Blender keeps the scale of an armature in its node, and its inverse in the matrices.
 TEST_F(HandFile, TheScaleOfAnArmatureIsKnown) {
   HandMesh hand = mean_hand(Side::left);

@@ -86,9 +86,11 @@ TEST_F(NpyFiles, EveryFaultIsNamedTogetherWithItsFile) {
   };
   EXPECT_THAT(broken("NUMPY", "NUMPX"), HasSubstr("not a NumPy array"));
   EXPECT_THAT(broken(std::string("NUMPY\x01"), "NUMPY\x09"), HasSubstr("version 9"));
-  EXPECT_THAT(broken("<f4", ">f4"), HasSubstr(">f4"));
+  EXPECT_THAT(broken("<f4", ">f4"),
+              testing::AllOf(HasSubstr(">f4"), HasSubstr("numpy.load('broken.npy').astype('<f8'")));
   EXPECT_THAT(broken("<f4", "|O8"), HasSubstr("|O8"));
-  EXPECT_THAT(broken("False", "True "), HasSubstr("C order"));
+  EXPECT_THAT(broken("False", "True "),
+              testing::AllOf(HasSubstr("C order"), HasSubstr("astype('<f4', order='C')")));
   EXPECT_THAT(broken("(2, 2", "(2; 2"), HasSubstr("shape"));
   EXPECT_THAT(broken("(2, 2", "(2, 9"), HasSubstr("truncated"));
   EXPECT_THAT(broken("(2, 2", "(2, 1"), HasSubstr("bytes"));
@@ -96,6 +98,8 @@ TEST_F(NpyFiles, EveryFaultIsNamedTogetherWithItsFile) {
   EXPECT_THAT(complaint(file("broken.npy")), HasSubstr("bytes"));
   write(file("broken.npy"), good.substr(0, 40));
   EXPECT_THAT(complaint(file("broken.npy")), HasSubstr("header"));
+  write(file("broken.npy"), "MATLAB 5.0 MAT-file, Platform: GLNXA64");
+  EXPECT_THAT(complaint(file("broken.npy")), HasSubstr("scipy.io.loadmat('broken.npy')"));
   write(file("broken.npy"), "");
   EXPECT_THAT(complaint(file("broken.npy")), HasSubstr("not a NumPy array"));
 }
@@ -168,10 +172,68 @@ TEST_F(RecordingFiles, ARecordingInMetresOrMicrometresIsRefusedWithTheSizeOfTheH
 
 TEST_F(RecordingFiles, TimesThatDoNotAscendAreRefused) {
   ASSERT_TRUE(write_recording(folder_, made_up_recording()));
-  ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {0, 9000, 18000, 18000, 27000}));
+  ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {0, 9000, 18000, 17000, 27000}));
   const auto read = read_recording(folder_);
   ASSERT_FALSE(read);
   EXPECT_THAT(read.error().what, HasSubstr("timestamps.npy: time 3"));
+}
+
+TEST_F(RecordingFiles, OfTwoSamplesOfOneTimeOneIsLeftOutAndCounted) {
+  const auto made_up = made_up_recording();
+  ASSERT_TRUE(write_recording(folder_, made_up));
+  ASSERT_TRUE(write_npy_i64(file("timestamps.npy"), {0, 9000, 18000, 18000, 27000}));
+  testing::internal::CaptureStderr();
+  const auto read = read_recording(folder_);
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("timestamps.npy: 1 of 5 samples have the time of the one before"));
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_THAT(read->time_ns, testing::ElementsAre(0, 9'000'000, 18'000'000, 27'000'000));
+  for (const auto& hand : read->hands) {
+    ASSERT_EQ(hand.size(), 4u);
+    EXPECT_NE(std::memcmp(&hand[2], &hand[3], sizeof hand[2]), 0);
+  }
+  EXPECT_EQ(read_all_stamps_ns(folder_)->front().size(), 4u);
+}
+
+TEST_F(RecordingFiles, LostHandsAreRefusedWithTheSampleAndTheRemedy) {
+  const auto spoil = [&](const std::string& name, float value) {
+    ASSERT_TRUE(write_recording(folder_, made_up_recording()));
+    auto array = read_npy(file(name));
+    ASSERT_TRUE(array);
+    const auto of_a_sample = array->values.size() / 5;
+    std::vector<float> values(array->values.begin(), array->values.end());
+    std::fill_n(values.begin() + static_cast<long>(3 * of_a_sample), of_a_sample, value);
+    ASSERT_TRUE(write_npy_f32(file(name), array->shape, values));
+  };
+  spoil("joints_left.npy", std::nanf(""));
+  EXPECT_THAT(read_recording(folder_).error().what,
+              testing::AllOf(HasSubstr("joints_left.npy: sample 3 has a number that is not finite"),
+                             HasSubstr("numpy.save('joints_left.npy', j[ok])")));
+  spoil("bones_right.npy", 0);
+  EXPECT_THAT(read_recording(folder_).error().what,
+              testing::AllOf(HasSubstr("bones_right.npy: sample 3 has a bone without axes"),
+                             HasSubstr("numpy.save('bones_right.npy', b[ok])")));
+}
+
+TEST_F(RecordingFiles, ArraysOfOtherShapesAreRefusedWithTheLineOfNumpy) {
+  const auto refusal = [&](const std::vector<std::size_t>& shape) {
+    EXPECT_TRUE(write_recording(folder_, made_up_recording()));
+    EXPECT_TRUE(write_npy_f32(file("joints_left.npy"), shape, std::vector<float>(5 * 42 * 3)));
+    return read_recording(folder_).error().what;
+  };
+  EXPECT_THAT(refusal({5, 126}), HasSubstr("numpy.load('joints_left.npy').reshape(5, 42, 3)"));
+  EXPECT_THAT(refusal({42, 3, 5}),
+              HasSubstr("numpy.moveaxis(numpy.load('joints_left.npy'), -1, 0)"));
+}
+
+TEST_F(RecordingFiles, CasesThatOnceFailed) {
+  const auto folder = outside_data() / "cases/recordings";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "HANDCAST_DATA has no folder 'cases'";
+  EXPECT_THAT(read_recording(folder / "lost_as_nan").error().what,
+              HasSubstr("sample 55 has a number"));
+  const auto read = read_recording(folder / "one_time_twice");
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->time_ns.size(), 164u);
 }
 
 TEST_F(RecordingFiles, TimesInAnotherUnitAreRefusedWithItsName) {

@@ -34,6 +34,18 @@ TEST(NpyFolder, HoldsTheSamplesAndImagesOfTheRecording) {
   EXPECT_FALSE(std::filesystem::exists(folder / "npy/joints_left.npy"));
 }
 
+TEST(NpyFolder, WithoutAHandItHasTheTimesOfTheImages) {
+  test::Scratch scratch;
+  const auto folder = scratch.path() / "recording";
+  recording::test::write(folder, 5);
+  for (const auto* ending : {".data", ".index"})
+    std::filesystem::resize_file(folder / (std::string("pose.hands") + ending), 0);
+  EXPECT_FALSE(write_npy_folder(folder)) << "it says that there is no hand";
+  const auto times_ns = recording::read_stamps_ns(folder / "npy/camera_timestamps.npy");
+  ASSERT_TRUE(times_ns) << times_ns.error().what;
+  EXPECT_EQ(times_ns->size(), 5u);
+}
+
 TEST(NpyFolder, DoesNotOverwriteAnEarlierOne) {
   test::Scratch scratch;
   const auto folder = scratch.path() / "recording";
