@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "ipc/base/inherited.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 
 namespace handcast::calibrate {
@@ -87,7 +88,7 @@ Progress::Progress(Desk& desk, std::string title)
     : desk_(desk),
       title_(std::move(title)),
       end_(Deadline::at_ns(now_ns() + seconds_to_ns(desk.options.most_s))),
-      is_terminal_(isatty(STDERR_FILENO) == 1) {}
+      is_terminal_(inherited::is_terminal(STDERR_FILENO)) {}
 
 Progress::~Progress() {
   if (is_terminal_) fmt::print(stderr, "\n");

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
@@ -192,7 +193,8 @@ handcast::Result<std::string> run(const Options& options) {
   auto model = open_model(options);
   if (!model) return tl::make_unexpected(model.error());
   landmarks::HandFinder finder(std::move(*model), options.hands);
-  const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
+  const bool shows_progress =
+      !options.quiet && inherited::is_terminal(STDERR_FILENO) && options.images.size() > 1;
   std::vector<Result> results;
   std::string text;
   for (std::size_t i = 0; i < options.images.size(); ++i) {
