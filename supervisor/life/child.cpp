@@ -17,7 +17,6 @@
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/words.hpp"
 #include "supervisor/base/pidfd.hpp"
-#include "supervisor/base/rig_mark.hpp"
 #include "supervisor/base/spawn.hpp"
 
 namespace handcast::supervisor {
@@ -84,7 +83,7 @@ Result<Plan> make_plan(const ChildSpec& spec) {
     plan.arguments.insert(
         plan.arguments.end(),
         {daemon::kRigOption,
-         print_mark({.address = spec.rig, .epoch_ns = spec.epoch_ns, .network = own_network()})});
+         daemon::print_mark({.address = spec.rig, .epoch_ns = spec.epoch_ns, .network = daemon::own_network()})});
 
   auto log = open_pipe(ReadBy::supervisor);
   auto ready = open_pipe(ReadBy::supervisor);

@@ -19,9 +19,9 @@
 #include "ipc/base/log.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
+#include "ipc/daemon/handover.hpp"
 #include "supervisor/base/pidfd.hpp"
 #include "supervisor/base/process.hpp"
-#include "supervisor/base/rig_mark.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -127,8 +127,8 @@ Says said_by_environment(const std::filesystem::path& process) {
 }
 
 Says said_by_command_line(const std::filesystem::path& process) {
-  auto mark = mark_in(proc_text(process / "cmdline"));
-  if (!mark || mark->network != own_network()) return {};
+  auto mark = daemon::mark_in(proc_text(process / "cmdline"));
+  if (!mark || mark->network != daemon::own_network()) return {};
   return {std::move(mark->address), mark->epoch_ns, -1};
 }
 
