@@ -24,19 +24,23 @@ def options_parser(name, minutes):
 
 
 class Rig:
-    """A process of `handcast up` in a scope of its own."""
+    """A process of `handcast up` in a scope of its own.
 
-    def __init__(self, rig_file, settings, log):
+    `handcast`: the program; `before`: the words of a command that starts it, e.g. as another user.
+    """
+
+    def __init__(self, rig_file, settings, log, handcast=HANDCAST, before=()):
+        self.handcast, self.before = handcast, [word for word in before if word != "nohup"]
         self.scope = f"{pathlib.Path(log.name).stem}-{os.getpid()}"
         self.environment = {**os.environ, "HANDCAST_SCOPE": self.scope}
         self.log = log
         words = [word for setting in settings for word in ("--set", setting)]
-        self.process = subprocess.Popen([HANDCAST, "up", rig_file, *words], env=self.environment, stdout=log, stderr=log)
+        self.process = subprocess.Popen([*before, handcast, "up", rig_file, *words], env=self.environment, stdout=log, stderr=log)
 
     def run(self, *words, patience_s=30):
         """Runs `handcast WORDS`. Returns the exit code, None if it did not end in time, and the output."""
         try:
-            answer = subprocess.run([HANDCAST, *words], env=self.environment, capture_output=True, text=True, timeout=patience_s)
+            answer = subprocess.run([*self.before, self.handcast, *words], env=self.environment, capture_output=True, text=True, timeout=patience_s)
         except subprocess.TimeoutExpired:
             return None, ""
         return answer.returncode, answer.stdout
@@ -115,7 +119,17 @@ def arguments_of(pid):
         return []
 
 
-def processes_of(scope):
-    """The command lines of all processes of a scope, by pid."""
+def user_of(pid):
+    """The real user of a process, which does not change with its capabilities; None if it has died."""
+    try:
+        lines = pathlib.Path(f"/proc/{pid}/status").read_text(errors="replace").splitlines()
+        return next(int(line.split()[1]) for line in lines if line.startswith("Uid:"))
+    except (OSError, StopIteration):
+        return None
+
+
+def processes_of(scope, user=None):
+    """The command lines of all processes of a scope, by pid; `user`: only those of this one."""
     pids = [int(entry.name) for entry in pathlib.Path("/proc").iterdir() if entry.name.isdigit()]
-    return {pid: arguments for pid in pids if environment_of(pid).get("HANDCAST_SCOPE") == scope and (arguments := arguments_of(pid))}
+    return {pid: arguments for pid in pids if environment_of(pid).get("HANDCAST_SCOPE") == scope and (arguments := arguments_of(pid))
+            and user in (None, user_of(pid))}

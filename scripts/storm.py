@@ -14,18 +14,22 @@ import sys
 import tempfile
 import time
 
-from running_rig import Rig, options_parser, processes_of
+from running_rig import HANDCAST, Rig, options_parser, processes_of
 
 LONGEST_STOP_S = 5
 DOUBLE_AFTER_S = 3  # a replacement and the process that it replaces may overlap for less
 SETTINGS = ["camera.rate_hz=60", "projector.rate_hz=60", "projector.process.standby=true"]
 STOPS = ["down", "ctrl-c", "ctrl-c three times"]
+NOBODY = 65534
+AS_NOBODY = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups"]
 
 
 def role_of(arguments):
     """keeper, supervisor, or the name of a service; "" for commands such as `handcast down`."""
     program = pathlib.Path(arguments[0]).name
     if program == "handcast":
+        if "--hold" in arguments:
+            return "descriptor store"
         return "supervisor" if "--kept" in arguments else "keeper" if "up" in arguments[1:2] else ""
     if "--as" in arguments:
         return arguments[arguments.index("--as") + 1]
@@ -37,6 +41,7 @@ class Folder:
 
     def __init__(self):
         self.path = pathlib.Path(tempfile.mkdtemp(prefix="handcast-storm-"))
+        self.path.chmod(0o777)
         mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", self.path]
         self.mounted = subprocess.run(mount, capture_output=True).returncode == 0
         if not self.mounted:
@@ -58,6 +63,34 @@ class Folder:
     def close(self):
         if self.mounted:
             subprocess.run(["umount", self.path], capture_output=True)
+        shutil.rmtree(self.path, ignore_errors=True)
+
+
+class Programs:
+    """A copy of the programs for an ordinary user, in which some services have capabilities."""
+
+    def __init__(self):
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix="handcast-storm-"))
+        self.path.chmod(0o755)
+        (self.path / "bin").mkdir()
+        for program in [HANDCAST, *HANDCAST.parent.glob("handcast-*")]:
+            shutil.copy2(program, self.path / "bin")
+        for part in ("share", "lib/handcast"):
+            if (HANDCAST.parent.parent / part).is_dir():
+                shutil.copytree(HANDCAST.parent.parent / part, self.path / part)
+        self.handcast = self.path / "bin/handcast"
+        self.works = os.geteuid() == 0 and self.give_rights(["camera"])
+        if not self.works:
+            print("storm: no capabilities and no other users here: both need the superuser and setcap")
+
+    def give_rights(self, services):
+        """Gives exactly these services CAP_SYS_NICE. Returns whether it worked."""
+        for program in self.path.glob("bin/handcast-*"):
+            subprocess.run(["setcap", "-r", program], capture_output=True)
+        programs = [word for service in services for word in ("cap_sys_nice+ep", self.path / f"bin/handcast-{service}")]
+        return shutil.which("setcap") is not None and subprocess.run(["setcap", *programs], capture_output=True).returncode == 0
+
+    def close(self):
         shutil.rmtree(self.path, ignore_errors=True)
 
 
@@ -84,16 +117,42 @@ class Doubles:
 class Storm:
     """One life of a rig, from `up` to darkness."""
 
-    def __init__(self, options, chance, folder):
+    def __init__(self, options, chance, folder, programs):
         self.chance, self.folder = chance, folder
         self.events = collections.Counter()
         self.doubles = Doubles()
         self.stopped, self.idle = {}, []
         os.environ.update(XDG_RUNTIME_DIR=str(folder.path), TMPDIR=str(folder.path))
-        self.rig = Rig(options.rig, SETTINGS + options.set, open(options.out / "rig.log", "a"))
+        self.user, self.neighbour, self.keeper_lives = os.getuid(), None, True
+        self.nohup = chance.random() < 0.5
+        handcast, before, settings = HANDCAST, ["nohup"] if self.nohup else [], SETTINGS + options.set
+        log = open(options.out / "rig.log", "a")
+        self.how = chance.choice(["plain", "capabilities", "two users"]) if programs.works else "plain"
+        if self.how != "plain":
+            self.user, handcast, before = NOBODY, programs.handcast, before + AS_NOBODY
+        if self.how == "capabilities":
+            services = ["camera", "pose", "landmarks", "projector", "observer"]
+            programs.give_rights(chance.sample(services, chance.randint(1, len(services))))
+        if self.how == "two users":
+            programs.give_rights([])
+            self.neighbour = Rig(options.rig, ["camera.rate_hz=30", "projector.rate_hz=30"], log)
+            self.neighbour.wait_until_ready()
+        self.rig = Rig(options.rig, settings, log, handcast, before)
 
     def processes(self):
-        return processes_of(self.rig.scope)
+        return processes_of(self.rig.scope, self.user)
+
+    def losses(self):
+        """What the storm must not have ended: the light, while its keeper lives, and the rig of another user."""
+        lost = []
+        if self.keeper_lives and not services_in(self.processes()):
+            lost.append("all services")
+        if self.neighbour:
+            now = self.neighbour.status()
+            if not now or any(service["restarts"] for service in now["services"].values()):
+                lost.append("the rig of the other user")
+            self.neighbour.stop()
+        return lost
 
     def victim(self, *roles):
         found = [pid for pid, arguments in self.processes().items() if (role := role_of(arguments)) and (not roles or role in roles)]
@@ -109,14 +168,16 @@ class Storm:
 
     def strike(self):
         """One event."""
-        event = self.chance.choices(["kill", "stop", "kill supervisor", "stop supervisor", "kill keeper", "stop keeper", "disk full", "folder gone", "idle connections"],
-                                    [8, 4, 2, 2, 1, 1, 1, 1, 1])[0]
+        event = self.chance.choices(["kill", "stop", "kill supervisor", "stop supervisor", "kill keeper", "stop keeper", "disk full", "folder gone", "idle connections", "hang up"],
+                                    [8, 4, 2, 2, 1, 1, 1, 1, 1, 2 if self.nohup else 0])[0]
         if event == "disk full":
             happened = self.folder.fill()
         elif event == "folder gone":
             happened = self.folder.empty()
         elif event == "idle connections":
             happened = self.connect_idly() > 0
+        elif event == "hang up":
+            happened = any([self.signal(self.victim(role), signal.SIGHUP) for role in ("keeper", "supervisor")])
         else:
             what, _, whom = event.partition(" ")
             happened = self.hit(self.victim(*([whom] if whom else [])), what)
@@ -124,6 +185,7 @@ class Storm:
 
     def hit(self, pid, what):
         """Kills a process, or stops it for some seconds. Returns whether it lived."""
+        self.keeper_lives &= what != "kill" or role_of(self.processes().get(pid, [""])) != "keeper"
         hit = self.signal(pid, signal.SIGKILL if what == "kill" else signal.SIGSTOP)
         if hit and what == "stop":
             self.stopped[pid] = time.monotonic() + self.chance.uniform(0.5, 8)
@@ -131,7 +193,8 @@ class Storm:
 
     def connect_idly(self):
         """Connects to the control socket and asks nothing. Returns the number of connections."""
-        addresses = [line.split()[-1] for line in pathlib.Path("/proc/net/unix").read_text().splitlines() if f"/{self.rig.scope}/" in line]
+        ours = f"@handcast-{self.user}/{self.rig.scope}/"
+        addresses = [line.split()[-1] for line in pathlib.Path("/proc/net/unix").read_text().splitlines() if ours in line]
         before = len(self.idle)
         for address in addresses[:1] * 64:
             connection = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -206,34 +269,36 @@ def percentile(values, share):
 def main():
     options = options_parser("storm", minutes=10).parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    chance, folder = random.Random(options.seed), Folder()
+    chance, folder, programs = random.Random(options.seed), Folder(), Programs()
     rows, events = [], collections.Counter()
     end_s = time.monotonic() + 60 * options.minutes
     try:
         while time.monotonic() < end_s:
-            storm = Storm(options, chance, folder)
+            storm = Storm(options, chance, folder, programs)
             try:
                 storm.rage(chance.uniform(4, 20))
+                lost = storm.losses()
                 how, dark_s, left = storm.end()
             except BaseException:
                 storm.wait_for_the_rest()
                 raise
             events += storm.events
-            rows.append({"life": len(rows) + 1, "events": storm.events.total(), "stopped by": how, "dark after s": round(dark_s, 2), "left": "; ".join(left), "doubles": "; ".join(storm.doubles.found)})
+            rows.append({"life": len(rows) + 1, "as": storm.how + (", nohup" if storm.nohup else ""), "events": storm.events.total(), "lost": "; ".join(lost), "stopped by": how, "dark after s": round(dark_s, 2), "left": "; ".join(left), "doubles": "; ".join(storm.doubles.found)})
             print("  ".join(f"{key}: {value}" for key, value in rows[-1].items()), flush=True)
     finally:
         folder.close()
+        programs.close()
     with open(options.out / "storm.csv", "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)
     times = [row["dark after s"] for row in rows]
     late = sum(time_s > LONGEST_STOP_S for time_s in times)
-    left, doubles = (sum(bool(row[key]) for row in rows) for key in ("left", "doubles"))
+    lost, left, doubles = (sum(bool(row[key]) for row in rows) for key in ("lost", "left", "doubles"))
     print(f"{sum(events.values())} events in {len(rows)} lives: " + ", ".join(f"{count} {event}" for event, count in events.most_common()))
     print(f"dark after p50 {percentile(times, 0.5):.2f} s, p99 {percentile(times, 0.99):.2f} s, max {max(times):.2f} s; "
-          f"later than {LONGEST_STOP_S} s: {late}; lives with processes left: {left}; with doubles: {doubles}")
-    sys.exit(1 if late or left or doubles else 0)
+          f"later than {LONGEST_STOP_S} s: {late}; lives that lost the light: {lost}; with processes left: {left}; with doubles: {doubles}")
+    sys.exit(1 if late or lost or left or doubles else 0)
 
 
 if __name__ == "__main__":

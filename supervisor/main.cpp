@@ -14,6 +14,7 @@
 #include "ipc/base/suggest.hpp"
 #include "ipc/base/version.hpp"
 #include "supervisor/commands/verbs.hpp"
+#include "supervisor/succession/descriptor_store.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -88,6 +89,7 @@ int dispatch(const std::string& name, const Arguments& arguments) {
 int main(int argc, char** argv) {
   using namespace handcast::supervisor;
   const auto run_verb = [](int count, char** words) {
+    if (count >= 2 && words[1] == std::string_view(kHoldOption)) hold_descriptors();
     if (count >= 2) return dispatch(words[1], Arguments(words + 2, words + count));
     print_overview();
     return handcast::kExitUsage;

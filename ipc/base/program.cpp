@@ -6,12 +6,14 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <exception>
+#include <new>
 #include <string>
 
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 
 namespace handcast {
@@ -36,19 +38,22 @@ void open_standard_descriptors() {
 int run_program(std::string_view name, int argc, char** argv,
                 const std::function<int(int argc, char** argv)>& body) {
   open_standard_descriptors();
+  std::signal(SIGCHLD, SIG_DFL);  // if the caller ignores it, the ends of children are not told
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of write()
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
       return complain(kExitUsage, name, "argument " + std::to_string(i) + " is empty");
   int exit_code = kExitDone;
   try {
     exit_code = body(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return complain(kExitRetry, name, inherited::reason_of(ENOMEM));
   } catch (const std::exception& problem) {
     return complain(kExitRetry, name, problem.what());
   }
   const bool flushed = std::fflush(stdout) == 0;
   if (flushed && std::ferror(stdout) == 0) return exit_code;
-  return complain(kExitRetry, name,
-                  std::string("the output cannot be written: ") + std::strerror(errno));
+  return complain(kExitRetry, name, "the output cannot be written: " + inherited::reason_of(errno));
 }
 
 }  // namespace handcast

@@ -5,10 +5,10 @@
 
 namespace handcast {
 
-/// Runs the body of a main() and returns its exit code. An exception, or output that cannot be
-/// written (a full disk), is a sentence on stderr and kExitRetry; an empty argument, which a script
-/// passes when a variable is unset, is one and kExitUsage. `name`: of the program, for the
-/// sentence.
+/// Runs the body of a main() and returns its exit code. SIGXFSZ is ignored from here on, and
+/// SIGCHLD is not, whatever the caller wants. An exception, or output that cannot be written (a
+/// full disk), is a sentence on stderr and kExitRetry; an empty argument, which a script passes
+/// when a variable is unset, is one and kExitUsage. `name`: of the program, for the sentence.
 int run_program(std::string_view name, int argc, char** argv,
                 const std::function<int(int argc, char** argv)>& body);
 

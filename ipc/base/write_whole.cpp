@@ -11,11 +11,11 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <system_error>
 
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/output_file.hpp"
 #include "ipc/base/unique_fd.hpp"
 
@@ -25,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 tl::unexpected<Error> cannot(const fs::path& file, int number) {
-  return fail(Errc::unavailable,
-              fmt::format("'{}' cannot be written: {}", file.string(), std::strerror(number)));
+  return fail(Errc::unavailable, fmt::format("'{}' cannot be written: {}", file.string(),
+                                             inherited::reason_of(number)));
 }
 
 fs::path folder_of(const fs::path& file) {
@@ -186,7 +186,7 @@ Result<void> check_writable(const fs::path& file) {
       (target.is_in_place || may_write(folder_of(target.file))))
     return {};
   return fail(Errc::bad_config,
-              fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+              fmt::format("{}: cannot be written: {}", file.string(), inherited::reason_of(errno)));
 }
 
 }  // namespace handcast

@@ -12,8 +12,12 @@ namespace handcast::control {
 
 Result<std::string> choose_rig(const std::string& name) {
   const auto rigs = living_rigs();
-  if (rigs.empty())
-    return fail(Errc::unavailable, "no rig is up; `handcast up RIG.toml` starts one");
+  if (rigs.empty()) {
+    const auto others = join(rigs_of_others(), "; ");
+    return fail(Errc::unavailable, others.empty()
+                                       ? "no rig is up; `handcast up RIG.toml` starts one"
+                                       : "no rig of this user is up, but " + others);
+  }
   if (name.empty() && rigs.size() == 1) return rigs.front();
   if (name.empty())
     return fail(Errc::unavailable, fmt::format("several rigs are up: {}", join(rigs, ", ")));

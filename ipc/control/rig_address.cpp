@@ -2,27 +2,52 @@
 #include "ipc/control/rig_address.hpp"
 
 #include <fmt/format.h>
+#include <pwd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
+#include <utility>
 
 #include "ipc/base/rig_name.hpp"
 
 namespace handcast::control {
 namespace {
 
-/// The text before the name in the addresses of this user and scope.
-std::string prefix() {
+std::string scope() {
   const char* scope = std::getenv(kScopeVariable);
-  return fmt::format("handcast-{}/{}/", getuid(), scope ? scope : "");
+  return scope ? scope : "";
+}
+
+/// The text before the name in the addresses of this user and scope.
+std::string prefix() { return fmt::format("handcast-{}/{}/", getuid(), scope()); }
+
+/// Splits the address of a rig of this scope, whoever's it is.
+std::optional<std::pair<uid_t, std::string>> user_and_name_in(std::string_view address) {
+  constexpr std::string_view kBegin = "handcast-";
+  if (!address.starts_with(kBegin)) return std::nullopt;
+  address.remove_prefix(kBegin.size());
+  uid_t user{};
+  const auto [end, error] = std::from_chars(address.data(), address.data() + address.size(), user);
+  address.remove_prefix(static_cast<std::size_t>(end - address.data()));
+  const auto between = fmt::format("/{}/", scope());
+  if (error != std::errc{} || !address.starts_with(between)) return std::nullopt;
+  const auto name = address.substr(between.size());
+  return is_rig_name(name) ? std::optional(std::pair(user, std::string(name))) : std::nullopt;
+}
+
+std::string name_of_user(uid_t user) {
+  const auto* entry = getpwuid(user);
+  return entry ? entry->pw_name : fmt::format("#{}", user);
 }
 
 /// A listening socket in the abstract namespace.
@@ -75,13 +100,8 @@ ucred peer_of(int socket) {
   return peer;
 }
 
-}  // namespace
-
-Result<RigAddress> address_of(std::string_view rig) {
-  if (!is_rig_name(rig))
-    return fail(Errc::bad_config,
-                fmt::format("'{}' is not a valid name of a rig; {}", rig, kRigNameRule));
-  RigAddress address{.text = prefix().append(rig)};
+Result<RigAddress> to_address(std::string text) {
+  RigAddress address{.text = std::move(text)};
   if (address.text.size() >= sizeof address.socket.sun_path)
     return fail(
         Errc::bad_config,
@@ -90,6 +110,26 @@ Result<RigAddress> address_of(std::string_view rig) {
   std::memcpy(address.socket.sun_path + 1, address.text.data(), address.text.size());
   address.size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + address.text.size());
   return address;
+}
+
+/// The process that listens at an address, whoever's it is; its pid is -1 if none accepts.
+ucred listener_at(const std::string& text) {
+  const auto address = to_address(text);
+  const UniqueFd socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!address || !socket ||
+      ::connect(socket.get(), reinterpret_cast<const sockaddr*>(&address->socket), address->size) !=
+          0)
+    return {.pid = -1, .uid = static_cast<uid_t>(-1), .gid = static_cast<gid_t>(-1)};
+  return peer_of(socket.get());
+}
+
+}  // namespace
+
+Result<RigAddress> address_of(std::string_view rig) {
+  if (!is_rig_name(rig))
+    return fail(Errc::bad_config,
+                fmt::format("'{}' is not a valid name of a rig; {}", rig, kRigNameRule));
+  return to_address(prefix().append(rig));
 }
 
 std::string name_in(std::string_view address) {
@@ -106,6 +146,23 @@ std::vector<std::string> living_rigs() {
       rigs.push_back(std::move(name));
   std::ranges::sort(rigs);
   return rigs;
+}
+
+std::vector<std::string> rigs_of_others() {
+  std::vector<std::string> sentences;
+  for (const auto& socket : listening_sockets()) {
+    const auto rig = user_and_name_in(socket.name);
+    if (!rig || rig->first == getuid()) continue;
+    const auto listener = listener_at(socket.name);
+    if (listener.pid < 0 || listener.uid != rig->first) continue;  // anybody can take the name
+    sentences.push_back(fmt::format(
+        "rig '{0}' of user {1} is up (pid {2}): `sudo -u {3} handcast status --rig {0}` shows it, "
+        "`sudo -u {3} handcast down --rig {0}` stops it",
+        rig->second, name_of_user(rig->first), listener.pid,
+        getpwuid(rig->first) ? name_of_user(rig->first) : fmt::format("'#{}'", rig->first)));
+  }
+  std::ranges::sort(sentences);
+  return sentences;
 }
 
 bool has_supervisor(const std::string& rig) {

@@ -35,6 +35,10 @@ std::string name_in(std::string_view address);
 /// The names of this user's rigs that have a supervisor, sorted.
 std::vector<std::string> living_rigs();
 
+/// A sentence for each rig of this scope that is up and belongs to another user: whose it is, and
+/// how to reach it.
+std::vector<std::string> rigs_of_others();
+
 /// True if a process of this user listens at the rig's address, even if it hangs.
 bool has_supervisor(const std::string& rig);
 

@@ -11,8 +11,10 @@
 /// The contract between the supervisor and the daemons that it starts. It is also the way to run a
 /// daemon by hand in a test.
 ///
-///   argv   [--as NAME] --config FILE [--set path=value]...
+///   argv   [--as NAME] --config FILE [--set path=value]... [--of-rig MARK]
 ///              NAME: the service that it is, of a program that can be several.
+///              MARK: says the same as HANDCAST_RIG to those from whom the kernel hides the
+///              environment of a daemon that has capabilities. A daemon does not use it.
 ///
 ///   env    HANDCAST_RINGS=camera.frames=5,pose.hands=6
 ///              The descriptors of the rings' segments, by stream.
@@ -51,6 +53,8 @@
 ///             its work before, e.g. let its light fade, in less than supervisor.stop_s. A second
 ///             signal of either kind means: at once.
 namespace handcast::daemon {
+
+inline constexpr const char* kRigOption = "--of-rig";  ///< see argv
 
 /// The names of the environment variables.
 /// @{

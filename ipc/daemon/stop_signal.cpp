@@ -5,6 +5,8 @@
 
 #include <atomic>
 
+#include "ipc/base/inherited.hpp"
+
 namespace handcast::daemon {
 namespace {
 
@@ -24,8 +26,8 @@ void install_stop_signals() {
   struct sigaction action {};
   action.sa_handler = note;
   sigemptyset(&action.sa_mask);
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
+  for (const int number : {SIGTERM, SIGINT})
+    if (!inherited::is_ignored(number)) sigaction(number, &action, nullptr);
   action.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &action, nullptr);
 }

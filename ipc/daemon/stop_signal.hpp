@@ -11,7 +11,7 @@ enum class Stop {
 };
 
 /// From now on SIGTERM and SIGINT are only noted (blocking calls return EINTR), and SIGPIPE is
-/// ignored.
+/// ignored. One that the caller of the program wants to be ignored stays so.
 void install_stop_signals();
 /// What the signals so far ask for. Safe from any thread.
 Stop requested_stop();

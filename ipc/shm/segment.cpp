@@ -15,13 +15,14 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 
 namespace handcast::ipc {
 namespace {
 
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW;
 
-std::string reason() { return std::strerror(errno); }
+std::string reason() { return inherited::reason_of(errno); }
 
 template <std::size_t N>
 std::string text_of(const std::array<char, N>& text) {

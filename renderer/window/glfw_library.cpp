@@ -22,7 +22,8 @@ Result<std::unique_ptr<GlfwLibrary>> GlfwLibrary::open() {
   if (glfwInit() != GLFW_TRUE)
     return fail(Errc::unavailable,
                 fmt::format("no display can be opened ({}); DISPLAY must name an X server that "
-                            "this user may use",
+                            "this user may use, and XAUTHORITY its key; `handcast install-units` "
+                            "writes a unit that has them",
                             last_reason()));
   return std::unique_ptr<GlfwLibrary>(new GlfwLibrary);
 }

@@ -10,6 +10,7 @@
 #include "ipc/base/log.hpp"
 #include "renderer/window/blit.hpp"
 #include "renderer/window/glfw_library.hpp"
+#include "renderer/window/idle_inhibitor.hpp"
 #include "renderer/window/levels.hpp"
 #include "renderer/window/share_group.hpp"
 #include "renderer/window/x11.hpp"
@@ -65,6 +66,7 @@ class Window::Screen {
   Result<void> find_monitor();
   Result<void> create_window();
   void watch_monitors();
+  void keep_awake();
   void listen();
   void note(PointerEvent::Kind kind);
   void warm_up();
@@ -76,8 +78,9 @@ class Window::Screen {
   WindowSettings settings_;
   GLFWwindow* window_ = nullptr;
   GLFWmonitor* monitor_ = nullptr;  ///< of a full-screen window, while it is plugged in
-  std::optional<Monitor> found_;    ///< how it was found last
-  double rate_hz_ = 0;              ///< of the monitor; 0: unknown
+  std::optional<IdleInhibitor> inhibitor_;
+  std::optional<Monitor> found_;  ///< how it was found last
+  double rate_hz_ = 0;            ///< of the monitor; 0: unknown
   std::unique_ptr<Blit> blit_;
   std::unique_ptr<LevelsShader> levels_;
   bool has_appeared_ = false;
@@ -142,7 +145,20 @@ Result<void> Window::Screen::create() {
 
   listen();
   watch_monitors();
+  if (settings_.keeps_awake) keep_awake();
   return {};
+}
+
+/// The X server has timers of its own; those of a desktop know nothing of them.
+void Window::Screen::keep_awake() {
+  if (!x11::keep_awake())
+    log::warning(
+        "the X server's screen saver cannot be suspended; `xset s off -dpms` switches it off");
+  auto inhibitor = IdleInhibitor::open("light on hands");
+  if (inhibitor)
+    inhibitor_.emplace(std::move(*inhibitor));
+  else
+    log::info("no desktop was asked to stay awake: {}", inhibitor.error().what);
 }
 
 /// Hides the window while its monitor is unplugged.

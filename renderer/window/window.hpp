@@ -24,6 +24,7 @@ struct WindowSettings {
   /// @}
   bool full_screen = false;  ///< on `monitor`, without cursor; otherwise among other windows
   std::string monitor;       ///< see choose_monitor() in monitor.hpp
+  bool keeps_awake = false;  ///< the monitor is not blanked, and the desktop not locked, meanwhile
   bool vsync = true;         ///< show() waits for the refresh of the monitor
   /// Called when the connection to the display server is lost; must end the process. Empty: the
   /// process ends with exit code 1.

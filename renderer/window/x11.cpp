@@ -5,7 +5,12 @@
 #include <GLFW/glfw3.h>
 #include <GLFW/glfw3native.h>
 #include <X11/Xatom.h>
+#include <X11/Xmd.h>
 #include <X11/extensions/Xrandr.h>
+#include <X11/extensions/dpms.h>
+#ifdef HANDCAST_WITH_XSS
+#include <X11/extensions/scrnsaver.h>
+#endif
 
 namespace handcast::renderer::x11 {
 namespace {
@@ -41,6 +46,39 @@ std::vector<std::uint8_t> edid_of(GLFWmonitor* monitor) {
 void when_display_is_lost(std::function<void()> reaction) {
   reaction_to_loss = std::move(reaction);
   XSetIOErrorHandler(on_loss);
+}
+
+std::optional<Blanking> blanking() {
+  Display* display = XOpenDisplay(nullptr);
+  if (display == nullptr) return std::nullopt;
+  Blanking blanking;
+  int interval = 0, prefer = 0, allow = 0;
+  XGetScreenSaver(display, &blanking.saver_s, &interval, &prefer, &allow);
+  CARD16 standby = 0, suspend = 0, off = 0, level = 0;
+  BOOL enabled = False;
+  int event = 0, error = 0;
+  if (DPMSQueryExtension(display, &event, &error) && DPMSCapable(display) &&
+      DPMSInfo(display, &level, &enabled) && enabled &&
+      DPMSGetTimeouts(display, &standby, &suspend, &off))
+    for (const int wait_s : {standby, suspend, off})
+      if (wait_s > 0 && (blanking.power_s == 0 || wait_s < blanking.power_s))
+        blanking.power_s = wait_s;
+  XCloseDisplay(display);
+  return blanking;
+}
+
+bool keep_awake() {
+  Display* display = glfwGetX11Display();
+  XResetScreenSaver(display);
+#ifdef HANDCAST_WITH_XSS
+  int event = 0, error = 0;
+  if (XScreenSaverQueryExtension(display, &event, &error)) {
+    XScreenSaverSuspend(display, True);
+    XFlush(display);
+    return true;
+  }
+#endif
+  return false;
 }
 
 }  // namespace handcast::renderer::x11

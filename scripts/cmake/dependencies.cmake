@@ -88,8 +88,8 @@ handcast_feature(CAIRO "pictures of a running rig, handcast preview (libcairo2-d
 find_package(glfw3 QUIET)
 find_package(OpenGL QUIET COMPONENTS OpenGL)
 find_package(X11 QUIET)
-handcast_found(found glfw3_FOUND OpenGL_OpenGL_FOUND X11_Xrandr_FOUND)
-handcast_feature(WINDOW "light in a window (libglfw3-dev libopengl-dev libxrandr-dev)" ${found})
+handcast_found(found glfw3_FOUND OpenGL_OpenGL_FOUND X11_Xrandr_FOUND X11_Xext_FOUND)
+handcast_feature(WINDOW "light in a window (libglfw3-dev libopengl-dev libxrandr-dev libxext-dev)" ${found})
 
 pkg_check_modules(alsa QUIET IMPORTED_TARGET alsa)
 handcast_found(found alsa_FOUND)

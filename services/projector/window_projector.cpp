@@ -92,6 +92,7 @@ Result<std::unique_ptr<Projector>> open_window(const config::Rig& rig,
                                         .height_px = height_px,
                                         .full_screen = settings.window.full_screen,
                                         .monitor = settings.window.monitor,
+                                        .keeps_awake = true,
                                         .vsync = settings.window.vsync,
                                         .when_display_is_lost = end_without_display});
   if (!window) return fail(window.error().code, "projector 'window': " + window.error().what);

@@ -6,6 +6,8 @@
 #include "config/rig.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/daemon/contract.hpp"
+#include "services/runtime/scheduling.hpp"
 
 namespace handcast::service {
 namespace {
@@ -43,6 +45,8 @@ Result<Options> parse_options(std::span<const Instance> instances, int argc,
                    "and hands it its rings.");
   Options options{.instance = &instances.front()};
   bool backends = false, describe = false;
+  std::string mark;
+  int priority = 0;
   add_as(line, instances, options.instance);
   line.add("--config FILE", options.config_file, "The rig file");
   line.add("--set path=value", options.settings, "A setting that overrides the file's");
@@ -51,11 +55,14 @@ Result<Options> parse_options(std::span<const Instance> instances, int argc,
            "'checked', and ends");
   line.add("--backends", backends, "Prints the back ends of this build, one per line");
   line.add("--describe", describe, "Prints its rings, settings and back ends as JSON");
+  line.add(std::string(daemon::kRigOption) + " MARK", mark, "");
+  line.add("--try-priority N", priority, "", {1, 99});
   auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   const auto& description = options.instance->description;
   if (!text->empty()) options.answer = std::move(*text);
   if (!options.answer && backends) options.answer = daemon::print_backends(description);
+  if (!options.answer && priority > 0) options.answer = try_priority(priority) + "\n";
   if (!options.answer && describe)
     options.answer = daemon::print_description(complete(description));
   if (options.answer || !options.config_file.empty()) return options;

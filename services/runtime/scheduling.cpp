@@ -34,12 +34,12 @@ Note use_cores(const std::vector<double>& cores, std::string_view service) {
 
 Note use_priority(int priority, std::string_view service) {
   if (priority == 0) return {};
-  const sched_param parameters{.sched_priority = priority};
-  if (sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return {};
+  const auto denied = try_priority(priority);
+  if (denied.empty()) return {};
   return fmt::format(
       "{}.process.priority: the process runs at normal priority, real time needs CAP_SYS_NICE or "
       "an rtprio limit of {}: {}",
-      service, priority, std::strerror(errno));
+      service, priority, denied);
 }
 
 bool may_lock_all_memory() {
@@ -64,6 +64,11 @@ Note lock_memory(bool wanted, std::string_view service) {
 }
 
 }  // namespace
+
+std::string try_priority(int priority) {
+  const sched_param parameters{.sched_priority = priority};
+  return sched_setscheduler(0, SCHED_FIFO, &parameters) == 0 ? "" : std::strerror(errno);
+}
 
 Result<void> check_scheduling(const config::Process& process, std::string_view service) {
   const auto there_are = sysconf(_SC_NPROCESSORS_CONF);

@@ -9,6 +9,10 @@
 
 namespace handcast::service {
 
+/// Gives this process a real-time priority (SCHED_FIFO). Returns why the system denies it; "" if it
+/// does not.
+std::string try_priority(int priority);
+
 /// Checks whether this machine has the cores of [NAME.process]. Errors: bad_config (it does not).
 Result<void> check_scheduling(const config::Process& process, std::string_view service);
 

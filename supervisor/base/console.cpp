@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 
 namespace handcast::supervisor {
@@ -20,7 +21,7 @@ log::Level level_of(std::string_view line) {
 }  // namespace
 
 bool has_terminal() {
-  static const bool terminal = isatty(STDERR_FILENO) == 1;
+  static const bool terminal = inherited::is_terminal(STDERR_FILENO);
   return terminal;
 }
 

@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "ipc/base/inherited.hpp"
+
 namespace handcast::supervisor {
 namespace {
 
@@ -21,7 +23,8 @@ tl::unexpected<Error> no_descriptor(const char* what) {
 sigset_t stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (!inherited::is_ignored(signal)) sigaddset(&signals, signal);
   return signals;
 }
 

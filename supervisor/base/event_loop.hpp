@@ -41,8 +41,9 @@ class EventLoop {
 /// A timer: its descriptor becomes readable every `period_ns`, until it is read. Errors:
 /// unavailable.
 Result<UniqueFd> open_timer(std::int64_t period_ns);
-/// Blocks the signals that stop a rig (SIGINT, SIGTERM, SIGHUP) and opens a descriptor that is
-/// readable when one has arrived. Errors: unavailable.
+/// Blocks the signals that stop a rig (SIGINT, SIGTERM and SIGHUP, but not those that the caller
+/// wants to be ignored) and opens a descriptor that is readable when one has arrived. Errors:
+/// unavailable.
 Result<UniqueFd> open_stop_signals();
 /// Reads a non-blocking descriptor until it is empty.
 void drain(int fd);

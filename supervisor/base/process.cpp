@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -50,6 +51,19 @@ std::string stat_field(const std::filesystem::path& folder, int number) {
   for (int i = kStateField; i <= number; ++i)
     if (!(fields >> field)) return {};
   return field;
+}
+
+std::string status_line(const std::filesystem::path& folder, std::string_view name) {
+  std::istringstream lines(proc_text(folder / "status"));
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(name) && line.substr(name.size()).starts_with(":\t"))
+      return line.substr(name.size() + 2);
+  return {};
+}
+
+std::uint64_t inode_of(int fd) {
+  struct stat status {};
+  return fd >= 0 && fstat(fd, &status) == 0 ? status.st_ino : 0;
 }
 
 std::optional<std::uint64_t> start_ticks_of(pid_t pid) {

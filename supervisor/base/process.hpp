@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace handcast::supervisor {
 
@@ -17,6 +18,10 @@ std::string proc_text(const std::filesystem::path& file);
 /// `folder`: /proc/PID or /proc/PID/task/TID. "" if there is no such process.
 std::string stat_field(const std::filesystem::path& folder, int number);
 
+/// A line of the file `status` of a process (proc(5)) without its name, e.g. "CapPrm"; "" if there
+/// is none.
+std::string status_line(const std::filesystem::path& folder, std::string_view name);
+
 /// The start time of a process in clock ticks since boot (/proc/PID/stat, field 22). Together with
 /// the pid it identifies the process, because pids are reused. Empty if there is no such process,
 /// or only a zombie.
@@ -24,6 +29,9 @@ std::optional<std::uint64_t> start_ticks_of(pid_t pid);
 
 /// The pid of the parent of a process. Empty if there is no such process, or only a zombie.
 std::optional<pid_t> parent_of(pid_t pid);
+
+/// The inode of an open file; 0 if it is not open.
+std::uint64_t inode_of(int fd);
 
 /// Converts a start time to CLOCK_MONOTONIC (ns). Ticks include the time during which the machine
 /// was suspended, CLOCK_MONOTONIC does not.

@@ -39,6 +39,25 @@ Result<void> write_unit(const std::filesystem::path& file, const std::string& te
   return written;
 }
 
+/// What a person must know about a unit whose light is a window.
+void print_window_steps(const UnitSpec& spec) {
+  if (spec.system)
+    fmt::print(
+        "The light is a window, so the unit names an X server: DISPLAY={} and XAUTHORITY={}. In "
+        "the session of {} that shows it, `echo $DISPLAY $XAUTHORITY` must print the same; "
+        "`systemctl edit {}` changes them. A unit without --system takes them from the session.\n",
+        printable(spec.display), printable(spec.x_authority), spec.user, unit_name(spec));
+  else
+    fmt::print(
+        "The light is a window, so the unit starts and stops with your graphical session "
+        "(graphical-session.target). `systemctl --user show-environment` must list DISPLAY; if it "
+        "does not, let the session call `systemctl --user import-environment DISPLAY XAUTHORITY` "
+        "at its start. If your desktop has no such target, let it call `systemctl --user start "
+        "{}`.\n",
+        unit_name(spec));
+  fmt::print("`handcast doctor` names what would blank, lock or suspend the computer.\n");
+}
+
 void print_next_steps(const UnitSpec& spec) {
   const auto* systemctl = spec.system ? "sudo systemctl" : "systemctl --user";
   if (spec.system && !spec.out.empty())
@@ -50,8 +69,32 @@ void print_next_steps(const UnitSpec& spec) {
     fmt::print(
         "Commands such as `handcast status` must run as user {0}: `sudo -u {0} handcast status`.\n",
         spec.user);
-  else
+  else if (!spec.window)
     fmt::print("  loginctl enable-linger    # to run also while you are not logged in\n");
+  if (spec.real_time && !spec.system)
+    fmt::print(
+        "A service wants a real-time priority, which a user's unit gets only up to the limit of "
+        "its manager: `sudo systemctl edit user@{}.service`, and there [Service] and "
+        "LimitRTPRIO=90; or use --system.\n",
+        getuid());
+  if (spec.window) print_window_steps(spec);
+}
+
+/// The display that the environment names, or else the usual one of this user.
+void take_display(UnitSpec& spec) {
+  const char* display = std::getenv("DISPLAY");
+  const char* authority = std::getenv("XAUTHORITY");
+  const auto* user = getpwnam(spec.user.c_str());
+  spec.display = display && *display ? display : ":0";
+  spec.x_authority =
+      authority && *authority ? authority : std::string(user ? user->pw_dir : "") + "/.Xauthority";
+}
+
+bool wants_real_time(const config::Rig& rig) {
+  const auto wants = [&](const char* service) {
+    return config::process_of(rig, service).priority > 0;
+  };
+  return wants("camera") || wants("pose") || wants("landmarks") || wants("projector");
 }
 
 }  // namespace
@@ -74,12 +117,15 @@ int run_install_units(const Arguments& arguments) {
   if (!rig) return complain(rig.error());
   if (const auto named = control::address_of(rig->name); !named) return complain(named.error());
   spec.rig = rig->name;
+  spec.real_time = wants_real_time(*rig);
+  spec.window = rig->projector.backend == "window";
 
   if (!spec.user.empty() && !spec.system) return line.refuse("--user needs --system");
   if (spec.system) {
     const auto user = user_of(spec.user);
     if (!user) return complain(user.error());
     spec.user = *user;
+    take_display(spec);
   }
   if (!spec.out.empty()) spec.out = std::filesystem::absolute(spec.out);
   const auto text = unit_text(spec);

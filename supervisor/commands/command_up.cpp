@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
@@ -75,6 +76,13 @@ void say_what_is_idle(const config::Rig& rig, const RunOptions& options) {
     log::info("note: {}", note);
 }
 
+/// What may hinder a rig, so that a later error does not surprise.
+void warn_of_surroundings() {
+  for (const auto& obstacle : inherited::obstacles()) log::warning("{}", obstacle);
+  for (const auto& rig : control::rigs_of_others())
+    log::warning("{}; a device that both use is open to one of them only", rig);
+}
+
 int run(RunOptions options) {
   if (const auto created = create_out(options.out); !created) return complain(created.error());
   const auto applied = applied_before(options.rig_file, options.settings);
@@ -107,6 +115,7 @@ int run_up(const Arguments& arguments) {
   line.add("--kept", order.kept, "");
   if (const auto code = line.answered(arguments)) return *code;
   log::never_wait_for_stderr();
+  if (!order.kept) warn_of_surroundings();
   order.rig_file = std::filesystem::absolute(order.rig_file);
   if (!order.out.empty()) order.out = std::filesystem::absolute(order.out);
   return order.kept || order.no_keeper ? run(run_options(order)) : keep_up(order);

@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/words.hpp"
 #include "supervisor/base/pidfd.hpp"
@@ -40,7 +40,7 @@ struct Plan {
 };
 
 tl::unexpected<Error> cannot(std::string_view what) {
-  return fail(Errc::unavailable, fmt::format("{}: {}", what, std::strerror(errno)));
+  return fail(Errc::unavailable, fmt::format("{}: {}", what, inherited::reason_of(errno)));
 }
 
 enum class ReadBy { supervisor, service };
@@ -79,6 +79,12 @@ Result<Plan> make_plan(const ChildSpec& spec) {
   Plan plan;
   plan.arguments.push_back(spec.program.string());
   plan.arguments.insert(plan.arguments.end(), spec.arguments.begin(), spec.arguments.end());
+  if (!spec.rig.empty())
+    plan.arguments.insert(
+        plan.arguments.end(),
+        {daemon::kRigOption,
+         daemon::print_mark(
+             {.address = spec.rig, .epoch_ns = spec.epoch_ns, .network = daemon::own_network()})});
 
   auto log = open_pipe(ReadBy::supervisor);
   auto ready = open_pipe(ReadBy::supervisor);
@@ -92,6 +98,7 @@ Result<Plan> make_plan(const ChildSpec& spec) {
     if (!turn) return tl::make_unexpected(turn.error());
     plan.turn = std::move(*turn);
   }
+  plan.inherited = spec.kept_open;
   hand_over({.rings = spec.rings,
              .ready_fd = plan.ready.write.get(),
              .standby_fd = plan.turn.read.get(),
@@ -114,7 +121,7 @@ class SpawnActions {
     sigset_t none, stops;
     sigemptyset(&none);
     sigemptyset(&stops);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&stops, number);
+    for (const int number : {SIGINT, SIGTERM}) sigaddset(&stops, number);
     posix_spawnattr_init(&attributes_);
     posix_spawnattr_setsigmask(&attributes_, &none);
     posix_spawnattr_setsigdefault(&attributes_, &stops);
@@ -146,9 +153,9 @@ Result<pid_t> start(Plan& plan) {
   const int error = posix_spawn(&pid, arguments[0], actions.files(), actions.attributes(),
                                 arguments.data(), environment.data());
   if (error == 0) return pid;
-  return fail(
-      is_a_persons_fault(error) ? Errc::bad_config : Errc::unavailable,
-      fmt::format("the program {} cannot be started: {}", plan.arguments[0], std::strerror(error)));
+  return fail(is_a_persons_fault(error) ? Errc::bad_config : Errc::unavailable,
+              fmt::format("the program {} cannot be started: {}", plan.arguments[0],
+                          inherited::reason_of(error)));
 }
 
 }  // namespace

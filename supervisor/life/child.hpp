@@ -28,6 +28,7 @@ struct ChildSpec {
   int state_fd = -1;                   ///< HANDCAST_STATE_FD; -1: none
   int rig_fd = -1;                     ///< the applied rig file, which `arguments` name; -1: none
   bool standby = false;                ///< the daemon prepares itself and waits for its turn
+  std::vector<int> kept_open{};        ///< further descriptors that it inherits
 };
 
 /// One process of a daemon, the leader of its own session. It continues to run if the supervisor

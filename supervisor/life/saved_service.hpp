@@ -19,6 +19,7 @@ struct SavedService {
   std::string swapped;              ///< the back end set by `handcast swap`; "": that of the rig
   std::string fingerprint;          ///< of the settings that the worker was started with
   int restarts = 0;                 ///< number of restarts
+  std::uint64_t log_inode = 0;      ///< of the pipe for the worker's output; 0: unknown
 };
 
 /// A living service of a supervisor that died. The pidfd was opened before the start time was

@@ -264,7 +264,8 @@ SavedService Service::saved() const {
           .state = state(),
           .swapped = backend_override_,
           .fingerprint = spec_.fingerprint,
-          .restarts = restarts()};
+          .restarts = restarts(),
+          .log_inode = inode_of(log_fd())};
 }
 
 pid_t Service::standby_pid() const {

@@ -130,6 +130,8 @@ class Service {
   State state() const { return shown(state_.worker); }
   /// The pid of the worker; 0 if there is none.
   pid_t pid() const { return worker_ ? worker_->pid() : 0; }
+  /// The reading end of the worker's output; -1: none.
+  int log_fd() const { return worker_ ? worker_->log_fd() : -1; }
   /// The pid of a standby that can be promoted; 0 if there is none.
   pid_t standby_pid() const;
   /// True if there is a process, worker or standby.

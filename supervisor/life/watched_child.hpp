@@ -25,6 +25,8 @@ class WatchedChild {
 
   /// Child::pid().
   pid_t pid() const { return child_.pid(); }
+  /// Child::log_fd().
+  int log_fd() const { return child_.log_fd(); }
   /// Child::signal().
   void signal(int number) { child_.signal(number); }
   /// Returns the child. Afterwards the object watches none.

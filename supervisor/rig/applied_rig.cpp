@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 
 #include "config/settings/frozen_file.hpp"
+#include "ipc/base/inherited.hpp"
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
@@ -32,8 +32,8 @@ Result<AppliedRig> make_applied(const config::Rig& rig) {
   constexpr int kReadOnly = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL;
   if (written && fcntl(file.get(), F_ADD_SEALS, kReadOnly) == 0)
     return AppliedRig{std::move(toml), std::move(file)};
-  return fail(Errc::unavailable,
-              fmt::format("the applied rig cannot be stored in memory: {}", std::strerror(errno)));
+  return fail(Errc::unavailable, fmt::format("the applied rig cannot be stored in memory: {}",
+                                             inherited::reason_of(errno)));
 }
 
 std::optional<config::Rig> applied_before(const std::filesystem::path& rig_file,

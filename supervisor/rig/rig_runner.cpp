@@ -178,6 +178,7 @@ int RigRunner::supervise() {
 void RigRunner::tick() {
   const auto now = now_ns();
   watchdog_.tick(now);
+  if (store_.has_ended()) keep_descriptors();
   beat(now);
   forgive_a_standstill(now);
   rig_.recorder.poll();
@@ -204,6 +205,25 @@ void RigRunner::follow_up() {
   if (revision == std::exchange(revision_, revision) || rig_.phase == Phase::done) return;
   rig_.rings.sweep_dead_rows();
   save();
+  keep_descriptors();
+}
+
+/// Keeps what a successor could not get from services whose descriptors the kernel hides.
+void RigRunner::keep_descriptors() {
+  if (rig_.stops()) return;
+  ChildSpec spec{.program = rig_.launch.program_folder / "handcast",
+                 .arguments = {},
+                 .rings = rig_.launch.rings,
+                 .epoch_ns = rig_.launch.epoch_ns,
+                 .rig = rig_.launch.rig,
+                 .state_fd = rig_.launch.state_fd};
+  std::vector<pid_t> pids;
+  for (const auto& service : rig_.services.all()) {
+    if (!service->is_running()) continue;
+    if (service->pid() > 0) pids.push_back(service->pid());
+    if (service->log_fd() >= 0) spec.kept_open.push_back(service->log_fd());
+  }
+  store_.keep(std::move(spec), pids);
 }
 
 /// Enters Phase::up when all services have been ready or have exceeded their time. A rig that was
@@ -340,6 +360,7 @@ void RigRunner::finish() {
       exit_code_ = kExitConfig;  // kExitRetry would start the rig again
     }
   }
+  store_.close();
   if (const int left = end_services(rig_.name, 0, now_ns()); left > 0)
     log::warning("services of rig '{}' that this supervisor did not start were killed: {}",
                  rig_.name, left);

@@ -10,6 +10,7 @@
 #include "supervisor/rig/live_rig.hpp"
 #include "supervisor/rig/requests.hpp"
 #include "supervisor/succession/adoption.hpp"
+#include "supervisor/succession/descriptor_store.hpp"
 #include "supervisor/succession/systemd.hpp"
 
 namespace handcast::supervisor {
@@ -51,6 +52,7 @@ class RigRunner {
   void tick();
   void beat(std::int64_t now_ns);
   void follow_up();
+  void keep_descriptors();
   void forgive_a_standstill(std::int64_t now_ns);
   void show_progress_now_and_then(std::int64_t now_ns);
   void show_progress(std::int64_t now_ns);
@@ -75,6 +77,7 @@ class RigRunner {
   Requests requests_;
   Watchdog watchdog_;
   std::optional<StateMemory> state_;  ///< set by open()
+  DescriptorStore store_;
 
   bool inherited_ = false;  ///< the rig was taken over from a supervisor that died
   int exit_code_ = kExitDone;

@@ -2,11 +2,11 @@
 #include "supervisor/rig/ring_set.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 
 #include "ipc/ring/row_owner.hpp"
+#include "supervisor/base/process.hpp"
 #include "supervisor/succession/adoption.hpp"
 
 namespace handcast::supervisor {
@@ -72,10 +72,7 @@ daemon::Rings RingSet::descriptors() const {
 
 std::vector<SavedRing> RingSet::saved() const {
   std::vector<SavedRing> saved;
-  for (const auto& ring : rings_) {
-    struct stat status {};
-    if (fstat(ring.fd(), &status) == 0) saved.push_back({ring.stream(), status.st_ino, ring.fd()});
-  }
+  for (const auto& ring : rings_) saved.push_back({ring.stream(), inode_of(ring.fd()), ring.fd()});
   return saved;
 }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <set>
 
 #include "ipc/base/clock.hpp"
@@ -37,23 +38,27 @@ std::vector<AdoptedProcess> living_of(const SavedRig& saved, std::vector<FoundPr
   return living;
 }
 
-bool is_inode(int fd, std::uint64_t inode) {
-  struct stat status {};
-  return fd >= 0 && fstat(fd, &status) == 0 && status.st_ino == inode;
+/// The processes that may have the rings open: the living services first.
+std::vector<pid_t> holders_in(const std::vector<AdoptedProcess>& living,
+                              const std::vector<FoundProcess>& others) {
+  std::vector<pid_t> holders;
+  for (const auto& process : living) holders.push_back(process.saved.pid);
+  for (const auto& process : others) holders.push_back(process.pid);
+  return holders;
 }
 
 /// Opens the memory of a ring as a new open file, which shares no locks with that of the service.
-Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<AdoptedProcess>& living,
+Result<UniqueFd> reopen(const SavedRing& ring, const std::vector<pid_t>& holders,
                         const Stored& stored) {
   std::string reason = "no living process has it";
-  for (const auto& process : living) {
-    const auto file = fmt::format("/proc/{}/fd/{}", process.saved.pid, ring.fd);
+  for (const auto pid : holders) {
+    const auto file = fmt::format("/proc/{}/fd/{}", pid, ring.fd);
     UniqueFd fd(::open(file.c_str(), O_RDWR | O_CLOEXEC));
-    if (is_inode(fd.get(), ring.inode)) return fd;
+    if (fd && inode_of(fd.get()) == ring.inode) return fd;
     reason = fmt::format("{}: {}", file, fd ? "that is another file" : std::strerror(errno));
   }
   for (const auto& [stream, fd] : stored)
-    if (stream == ring.stream && is_inode(fd.get(), ring.inode))
+    if (stream == ring.stream && inode_of(fd.get()) == ring.inode)
       return UniqueFd(fcntl(fd.get(), F_DUPFD_CLOEXEC, 3));
   return fail(Errc::unavailable,
               fmt::format("ring '{}' cannot be opened ({})", ring.stream, reason));
@@ -72,14 +77,14 @@ Result<UniqueFd> place(UniqueFd fd, int number) {
 }
 
 Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved,
-                                             const std::vector<AdoptedProcess>& living,
+                                             const std::vector<pid_t>& holders,
                                              const Stored& stored) {
   int above_all = 3;  // a number that no ring needs
   for (const auto& ring : saved.rings) above_all = std::max(above_all, ring.fd + 1);
 
   std::vector<UniqueFd> memories;
   for (const auto& ring : saved.rings) {
-    auto memory = reopen(ring, living, stored);
+    auto memory = reopen(ring, holders, stored);
     if (!memory) return tl::make_unexpected(memory.error());
     memories.emplace_back(fcntl(memory->get(), F_DUPFD_CLOEXEC, above_all));
     if (!memories.back())
@@ -98,15 +103,32 @@ Result<std::vector<ipc::Segment>> take_rings(const SavedRig& saved,
   return rings;
 }
 
-/// Opens the reading end of a service's output again. The output in between is lost.
-UniqueFd reopen_log(pid_t pid) {
-  return UniqueFd(
-      ::open(fmt::format("/proc/{}/fd/1", pid).c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
+/// The descriptor of a process for the file with this inode, as a path; "" if it has none.
+std::filesystem::path descriptor_of(pid_t pid, std::uint64_t inode) {
+  std::error_code hidden;
+  for (auto entry = std::filesystem::directory_iterator(fmt::format("/proc/{}/fd", pid), hidden);
+       !hidden && entry != std::filesystem::directory_iterator(); entry.increment(hidden)) {
+    struct stat status {};
+    if (stat(entry->path().c_str(), &status) == 0 && status.st_ino == inode) return entry->path();
+  }
+  return {};
+}
+
+/// Opens the reading end of a service's output again. The output in between is lost. If the service
+/// hides its descriptors, `others` may have that end.
+UniqueFd reopen_log(const SavedService& service, const std::vector<FoundProcess>& others) {
+  constexpr int kHow = O_RDONLY | O_NONBLOCK | O_CLOEXEC;
+  UniqueFd log(::open(fmt::format("/proc/{}/fd/1", service.pid).c_str(), kHow));
+  for (const auto& other : others)
+    if (!log && service.log_inode != 0)
+      log = UniqueFd(::open(descriptor_of(other.pid, service.log_inode).c_str(), kHow));
+  return log;
 }
 
 /// Kills the services that were not ready, because they can no longer report it: their pipe is
 /// closed. Returns the others.
-std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
+std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living,
+                                           const std::vector<FoundProcess>& others) {
   std::vector<AdoptedProcess> ready;
   for (auto& process : living) {
     if (process.saved.state != State::ready) {
@@ -115,7 +137,7 @@ std::vector<AdoptedProcess> keep_the_ready(std::vector<AdoptedProcess> living) {
       kill_now(process.saved.pid, process.pidfd);
       continue;
     }
-    process.log = reopen_log(process.saved.pid);
+    process.log = reopen_log(process.saved, others);
     ready.push_back(std::move(process));
   }
   return ready;
@@ -190,7 +212,7 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
   }
   auto& [memory, saved] = *state;
   auto living = living_of(saved, found);
-  auto rings = take_rings(saved, living, stored);
+  auto rings = take_rings(saved, holders_in(living, found), stored);
   if (!rings && !living.empty())
     return fail(
         rings.error().code,
@@ -198,10 +220,10 @@ Result<std::optional<AdoptedRig>> adopt(const std::string& name) {
             "services of rig '{}' run without a supervisor and cannot be taken over: {}: {}; "
             "`handcast down --rig {}` stops them",
             name, names_of(living), rings.error().what, name));
+  auto ready = keep_the_ready(std::move(living), found);
   kill_all(found);
   if (!rings) return std::nullopt;  // systemd did not keep all of them, but they are not in use
-  return AdoptedRig{std::move(saved), std::move(memory), std::move(*rings),
-                    keep_the_ready(std::move(living))};
+  return AdoptedRig{std::move(saved), std::move(memory), std::move(*rings), std::move(ready)};
 }
 
 Result<StateMemory> state_memory_of(const FoundProcess& service) {

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "supervisor/base/console.hpp"
@@ -112,9 +113,9 @@ class Keeper {
     prctl(PR_SET_CHILD_SUBREAPER, 1);
     signal(SIGCHLD, SIG_DFL);
     signal(SIGPIPE, SIG_IGN);
-    sigemptyset(&stop_signals_);
-    for (const int number : kStopSignals) sigaddset(&stop_signals_, number);
-    awaited_ = stop_signals_;
+    sigemptyset(&awaited_);  // a signal that is blocked arrives even if it is ignored
+    for (const int number : kStopSignals)
+      if (!inherited::is_ignored(number)) sigaddset(&awaited_, number);
     sigaddset(&awaited_, SIGCHLD);
     sigprocmask(SIG_BLOCK, &awaited_, nullptr);
   }
@@ -248,10 +249,13 @@ class Keeper {
   }
 
   int give_up() const {
+    const bool has_services = !rig_.empty() && !find_services(rig_).empty();
     print_line(fmt::format(
-        "handcast: the supervisor died {} times within a minute and is not started again; its "
-        "services continue to run: `handcast up` takes them over, `handcast down` stops them",
-        SupervisorDeaths::kDeathsInAMinute));
+        "handcast: the supervisor died {} times within a minute ({}) and is not started again; {}",
+        SupervisorDeaths::kDeathsInAMinute, exit_ ? exit_->describe() : "no process",
+        has_services ? "its services continue to run: `handcast up` takes them over, `handcast "
+                       "down` stops them"
+                     : "no service of its rig runs"));
     return kExitRetry;
   }
 
@@ -261,7 +265,7 @@ class Keeper {
   UniqueFd there_;
   SupervisorCommand command_;
   SupervisorDeaths deaths_;
-  sigset_t stop_signals_{}, awaited_{};
+  sigset_t awaited_{};
   /// The stop signals received so far. A successor gets them, too, because the rig still has to be
   /// stopped.
   sigset_t received_{};

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/succession/process_discovery.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <filesystem>
 #include <optional>
@@ -17,6 +19,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
+#include "ipc/daemon/handover.hpp"
 #include "supervisor/base/pidfd.hpp"
 #include "supervisor/base/process.hpp"
 
@@ -52,23 +55,35 @@ std::int64_t number_in(std::string_view environment, std::string_view variable) 
   return number;
 }
 
+/// The name of the program; "" if the kernel hides it.
+std::string program_of(const std::filesystem::path& process, std::string_view command_line) {
+  std::error_code hidden;
+  auto program = std::filesystem::read_symlink(process / "exe", hidden);
+  if (hidden) program = command_line.substr(0, command_line.find('\0'));
+  auto name = program.filename().string();
+  if (const auto deleted = name.find(" (deleted)"); deleted != std::string::npos)
+    name.resize(deleted);
+  return name;
+}
+
 /// The instance that --as names on its command line, or else the name of its program.
 std::string service_name(const std::filesystem::path& process) {
   constexpr std::string_view kInstance("\0--as\0", 6);
   const auto words = proc_text(process / "cmdline");
   if (const auto option = words.find(kInstance); option != std::string::npos)
     return words.substr(option + kInstance.size()).c_str();
-  std::error_code error;
-  auto program = std::filesystem::read_symlink(process / "exe", error).filename().string();
-  if (const auto deleted = program.find(" (deleted)"); deleted != std::string::npos)
-    program.resize(deleted);
+  const auto program = program_of(process, words);
   constexpr std::string_view kPrefix = "handcast-";
   return program.starts_with(kPrefix) ? program.substr(kPrefix.size()) : program;
 }
 
+/// The files of a process with capabilities belong to the superuser.
 bool is_of_this_user(const std::filesystem::path& process) {
   struct stat status {};
-  return stat(process.c_str(), &status) == 0 && status.st_uid == getuid();
+  if (stat(process.c_str(), &status) != 0) return false;
+  if (status.st_uid == getuid()) return true;
+  const auto users = status_line(process, "Uid");
+  return status.st_uid == 0 && users.substr(0, users.find('\t')) == fmt::to_string(getuid());
 }
 
 /// Names of rigs belong to a network namespace, but /proc shows the processes of all of them.
@@ -77,6 +92,11 @@ bool is_of_this_network(const std::filesystem::path& process) {
   }, there{};
   return stat("/proc/self/ns/net", &here) == 0 && stat((process / "ns/net").c_str(), &there) == 0 &&
          here.st_dev == there.st_dev && here.st_ino == there.st_ino;
+}
+
+bool is_hidden(const std::filesystem::path& file) {
+  const UniqueFd fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  return !fd && (errno == EACCES || errno == EPERM);
 }
 
 /// The environment of a process as /proc shows it. It is empty for a moment while the process
@@ -91,22 +111,43 @@ std::string environment_of(const std::filesystem::path& process) {
   return environment;
 }
 
+/// What a process says of its rig. The address is "" if it says nothing.
+struct Says {
+  std::string address;
+  std::int64_t epoch_ns = -1;
+  int state_fd = -1;
+};
+
+Says said_by_environment(const std::filesystem::path& process) {
+  const auto environment = environment_of(process);
+  auto address = value_in(environment, daemon::kRigVariable).value_or("");
+  if (address.empty() || !is_of_this_network(process)) return {};
+  return {std::move(address), number_in(environment, daemon::kEpochVariable),
+          static_cast<int>(number_in(environment, daemon::kStateVariable))};
+}
+
+Says said_by_command_line(const std::filesystem::path& process) {
+  auto mark = daemon::mark_in(proc_text(process / "cmdline"));
+  if (!mark || mark->network != daemon::own_network()) return {};
+  return {std::move(mark->address), mark->epoch_ns, -1};
+}
+
 /// The process is opened before it is examined: from then on it does not matter if its pid is
 /// reused.
 std::optional<FoundProcess> examine(pid_t pid, const std::filesystem::path& folder) {
   if (!is_of_this_user(folder) || getsid(pid) != pid) return std::nullopt;
   auto pidfd = open_pidfd(pid);
   if (!pidfd || has_ended(pidfd)) return std::nullopt;
-  const auto environment = environment_of(folder);
-  const auto address = value_in(environment, daemon::kRigVariable);
-  auto rig = control::name_in(address.value_or(""));
-  if (rig.empty() || !is_of_this_network(folder)) return std::nullopt;
+  const auto says =
+      is_hidden(folder / "environ") ? said_by_command_line(folder) : said_by_environment(folder);
+  auto rig = control::name_in(says.address);
+  if (rig.empty()) return std::nullopt;
   return FoundProcess{.rig = std::move(rig),
                       .service = service_name(folder),
                       .pid = pid,
                       .pidfd = std::move(pidfd),
-                      .epoch_ns = number_in(environment, daemon::kEpochVariable),
-                      .state_fd = static_cast<int>(number_in(environment, daemon::kStateVariable))};
+                      .epoch_ns = says.epoch_ns,
+                      .state_fd = says.state_fd};
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ struct FoundProcess {
 };
 
 /// The processes of this user's services, of all rigs or of the rig `name`, whoever started them:
-/// those with kRigVariable in their environment that lead a session. Also finds standbys, and
-/// services that no supervisor knows of.
+/// those with kRigVariable in their environment that lead a session, and those whose environment
+/// is hidden and whose command line has a RigMark. Also finds standbys, and services that no
+/// supervisor knows of.
 /// @{
 std::vector<FoundProcess> find_services();
 std::vector<FoundProcess> find_services(const std::string& name);

@@ -28,7 +28,8 @@ json to_json(const SavedService& service) {
           {"state", name_of(service.state)},
           {"swapped", service.swapped},
           {"fingerprint", service.fingerprint},
-          {"restarts", service.restarts}};
+          {"restarts", service.restarts},
+          {"log_inode", service.log_inode}};
 }
 
 json to_json(const SavedRig& rig) {
@@ -59,7 +60,8 @@ SavedService service_from(const json& object) {
           .state = state_named(object.at("state")),
           .swapped = object.at("swapped"),
           .fingerprint = object.at("fingerprint"),
-          .restarts = object.at("restarts")};
+          .restarts = object.at("restarts"),
+          .log_inode = object.value("log_inode", std::uint64_t{0})};
 }
 
 /// Throws json::exception if a member is missing or of another type.

@@ -16,7 +16,8 @@
 namespace handcast::supervisor {
 namespace {
 
-constexpr std::string_view kForSystem = "#system#", kForUser = "#user#";
+constexpr std::string_view kForSystem = "#system#", kForUser = "#user#", kForWindow = "#window#",
+                           kForRealTime = "#real-time#";
 
 /// Quotes one word of a command line. systemd expands %x and $X, and reads quotes and backslashes
 /// as a shell does.
@@ -53,17 +54,22 @@ bool take_mark(std::string& line, std::string_view mark) {
   return true;
 }
 
+/// A text between quotes where systemd expands %x but not $X.
+std::string plain(const std::string& text) {
+  std::string quoted;
+  for (const char character : text) {
+    if (character == '"' || character == '\\') quoted += '\\';
+    if (character == '%') quoted += character;
+    quoted += character;
+  }
+  return quoted;
+}
+
 /// A system unit may write only to the folders that it names. '-': if the folder is missing,
-/// `handcast up` says so better than systemd. In paths, systemd expands %x but not $X.
+/// `handcast up` says so better than systemd.
 std::string writable_out(const UnitSpec& spec) {
   if (spec.out.empty() || !spec.system) return {};
-  std::string path;
-  for (const char character : spec.out.string()) {
-    if (character == '"' || character == '\\') path += '\\';
-    if (character == '%') path += character;
-    path += character;
-  }
-  return fmt::format("ReadWritePaths=\"-{}\"", path);
+  return fmt::format("ReadWritePaths=\"-{}\"", plain(spec.out.string()));
 }
 
 std::string home() {
@@ -84,17 +90,25 @@ std::vector<std::string> device_groups() {
 std::string unit_name(const UnitSpec& spec) { return fmt::format("handcast-{}.service", spec.rig); }
 
 std::string unit_text(const UnitSpec& spec) {
-  const std::map<std::string, std::string> values{{"@NAME@", spec.rig},
-                                                  {"@PROGRAM@", word(spec.program)},
-                                                  {"@COMMAND@", command_of(spec)},
-                                                  {"@WRITABLE_OUT@", writable_out(spec)},
-                                                  {"@GROUPS@", join(spec.groups, " ")},
-                                                  {"@USER@", spec.user}};
+  const std::map<std::string, std::string> values{
+      {"@NAME@", spec.rig},
+      {"@PROGRAM@", word(spec.program)},
+      {"@COMMAND@", command_of(spec)},
+      {"@WRITABLE_OUT@", writable_out(spec)},
+      {"@GROUPS@", join(spec.groups, " ")},
+      {"@USER@", spec.user},
+      {"@CAPABILITIES@", spec.real_time ? "CAP_SYS_NICE" : ""},
+      {"@DISPLAY@", plain(spec.display)},
+      {"@XAUTHORITY@", plain(spec.x_authority)},
+      {"@SYSTEM_TARGET@", spec.window ? "graphical.target" : "multi-user.target"},
+      {"@USER_TARGET@", spec.window ? "graphical-session.target" : "default.target"}};
   std::istringstream lines{std::string(kServiceTemplate)};
   std::string text;
   for (std::string line; std::getline(lines, line);) {
+    if (take_mark(line, kForWindow) && !spec.window) continue;
     if (take_mark(line, kForSystem) && !spec.system) continue;
     if (take_mark(line, kForUser) && spec.system) continue;
+    if (take_mark(line, kForRealTime) && !spec.real_time) continue;
     text += replaced(line, values) + "\n";
   }
   return text;

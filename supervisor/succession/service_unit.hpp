@@ -17,6 +17,12 @@ struct UnitSpec {
   bool system = false;              ///< a unit of the system; false: of the user's session
   std::string user;                 ///< the user of a system unit
   std::vector<std::string> groups;  ///< further groups of a system unit
+  bool real_time = false;           ///< a service wants a real-time priority
+  bool window = false;              ///< the light is a window
+  /// The display of a system unit with a window.
+  /// @{
+  std::string display, x_authority;
+  /// @}
 };
 
 /// Those of the groups to which devices of a rig belong (video, render, input, plugdev) that this

@@ -14,6 +14,8 @@
 #include <cstring>
 #include <utility>
 
+#include "ipc/base/inherited.hpp"
+
 namespace handcast::supervisor {
 namespace {
 
@@ -28,7 +30,7 @@ struct Slot {
 
 tl::unexpected<Error> cannot(std::string_view what) {
   return fail(Errc::unavailable, fmt::format("the memory for the supervisor's state {}: {}", what,
-                                             std::strerror(errno)));
+                                             inherited::reason_of(errno)));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/rig_address.hpp"
@@ -89,6 +90,21 @@ Forced end_by_force(const std::string& name, const Process& supervisor, std::int
           static_cast<bool>(keeper)};
 }
 
+/// Whether no process of the rig is left that was started before this time.
+Result<void> seen_dark(const std::string& name, std::int64_t before_ns) {
+  auto left = find_services(name);
+  std::erase_if(left, [&](const auto& process) { return process.epoch_ns > before_ns; });
+  if (left.empty()) return {};
+  std::vector<std::string> names;
+  for (const auto& process : left)
+    names.push_back(fmt::format("{} (pid {})", process.service, process.pid));
+  return fail(
+      Errc::unavailable,
+      fmt::format("processes of rig '{}' are still alive, and there may be light: {}; `sudo "
+                  "kill -9` with their pids may end them",
+                  name, join(names, ", ")));
+}
+
 }  // namespace
 
 std::string describe(const StopReport& report, const std::string& name) {
@@ -110,16 +126,14 @@ Result<StopReport> stop_rig(const std::string& name) {
     if (answer) {
       report.by_supervisor = true;
       report.ended += end_services(name, kServicesEnd_s, before_ns);
-      return report;
+      return seen_dark(name, before_ns).map([&] { return report; });
     }
     const auto supervisor = open_process(control::listener_of(*address));
     const auto forced = end_by_force(name, supervisor, before_ns);
     report.ended += forced.ended;
     if (forced.had_keeper || !supervisor_comes_back(name)) break;
   }
-  if (const auto left = find_services(name); !left.empty())
-    return fail(Errc::unavailable,
-                fmt::format("{} processes of rig '{}' cannot be stopped", left.size(), name));
+  if (const auto dark = seen_dark(name, before_ns); !dark) return tl::make_unexpected(dark.error());
   if (control::has_supervisor(name))
     return fail(Errc::unavailable,
                 fmt::format("rig '{}' is started again and again; is it a unit of systemd? "

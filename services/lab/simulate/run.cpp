@@ -9,6 +9,7 @@
 
 #include "calib/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "services/lab/simulate/score.hpp"
@@ -20,7 +21,10 @@ namespace {
 class Progress {
  public:
   Progress(std::string rig, double seconds, bool quiet)
-      : rig_(std::move(rig)), seconds_(seconds), quiet_(quiet), tty_(isatty(STDERR_FILENO)) {}
+      : rig_(std::move(rig)),
+        seconds_(seconds),
+        quiet_(quiet),
+        tty_(inherited::is_terminal(STDERR_FILENO)) {}
   ~Progress() {
     if (tty_ && !quiet_) log::put("\n");
   }

@@ -8,6 +8,7 @@
 
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/version.hpp"
@@ -46,8 +47,8 @@ void stop_on_signals() {
   struct sigaction action {};
   action.sa_handler = [](int) { stop = true; };
   action.sa_flags = SA_RESETHAND;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int number : {SIGINT, SIGTERM})
+    if (!handcast::inherited::is_ignored(number)) sigaction(number, &action, nullptr);
 }
 
 int complain(const Error& error) {

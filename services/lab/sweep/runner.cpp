@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "services/lab/simulate/score.hpp"
 #include "services/lab/sweep/columns.hpp"
@@ -61,7 +62,7 @@ Progress::Progress(std::string plan, std::size_t runs, bool quiet)
     : plan_(std::move(plan)),
       runs_(runs),
       quiet_(quiet),
-      terminal_(isatty(STDERR_FILENO)),
+      terminal_(inherited::is_terminal(STDERR_FILENO)),
       start_ns_(now_ns()) {}
 
 Progress::~Progress() {

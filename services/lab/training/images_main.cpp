@@ -82,12 +82,14 @@ int main(int argc, char** argv) try {
 
   auto generator = Generator::create(people, seed);
   if (!generator)
-    return fmt::print(stderr, "handcast-training-images: {}\n", printable(generator.error().what)),
+    return fmt::print(stderr, "handcast-training-images: {}\n",
+                      handcast::printable(generator.error().what)),
            1;
   if (preview > 0) {
     const auto written = write_contact_sheet(*generator, preview, picture);
     if (!written)
-      fmt::print(stderr, "handcast-training-images: {}\n", printable(written.error().what));
+      fmt::print(stderr, "handcast-training-images: {}\n",
+                 handcast::printable(written.error().what));
     return written ? 0 : 1;
   }
   for (std::uint64_t i = first; i < first + count; ++i)

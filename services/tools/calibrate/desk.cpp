@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "ipc/base/inherited.hpp"
+
 namespace handcast::calibrate {
 namespace {
 
@@ -80,7 +82,7 @@ Progress::Progress(Desk& desk, std::string title)
     : desk_(desk),
       title_(std::move(title)),
       end_(Deadline::at_ns(now_ns() + seconds_to_ns(desk.options.most_s))),
-      is_terminal_(isatty(STDERR_FILENO) == 1) {}
+      is_terminal_(inherited::is_terminal(STDERR_FILENO)) {}
 
 Progress::~Progress() {
   if (is_terminal_) fmt::print(stderr, "\n");

@@ -92,6 +92,7 @@ Result<std::string> apply_settings(const fs::path& rig_file,
 
 Result<void> hand_over(const Options& options, const config::Rig& rig,
                        const calib::Calibration& running, Session& session) {
+  keep_above({rig.calibration, session.target(), config::measured_file_of(options.rig_file)});
   if (session.is_pending()) {
     if (is_true_by_name(rig))
       if (auto kept = keep_truth(options, running); !kept) return kept;
@@ -116,12 +117,12 @@ Result<void> hand_over(const Options& options, const config::Rig& rig,
 
 Result<void> undo(const Options& options, const config::Rig& rig) {
   const auto measured = config::measured_file_of(fs::absolute(options.rig_file));
-  const auto newest = std::max(newest_time(rig.calibration), newest_time(measured));
-  if (newest.empty())
+  const auto newest = std::max(newest_number(rig.calibration), newest_number(measured));
+  if (newest == 0)
     return fail(Errc::bad_config, fmt::format("nothing is kept of {} that could be taken back",
                                               options.rig_file.string()));
   const auto take = [&](const fs::path& file, const IsUsable& is_usable) -> Result<void> {
-    if (newest_time(file) != newest) return {};
+    if (newest_number(file) != newest) return {};
     return take_back(file, is_usable).map([](const auto& done) { fmt::print("{}\n", done); });
   };
   auto taken = take(rig.calibration, [](const fs::path& kept) {

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <ctime>
 #include <functional>
 #include <string_view>
-#include <tuple>
+#include <system_error>
 #include <vector>
 
 #include "config/settings/files.hpp"
@@ -24,57 +25,58 @@ fs::path in_folder(const fs::path& file, const std::string& stem) {
   return file.parent_path() / (stem + file.extension().string());
 }
 
-/// Of the first file that this process keeps: what it changes is taken back together.
-const std::string& time_in_names() {
-  static const std::string text = local_time("%Y-%m-%dT%H%M%S");
-  return text;
+constexpr std::string_view kTime = "-dddd-dd-ddTddddddZ";  ///< in a name; d: a digit
+
+std::string text_of(const char* format, const std::tm& time) {
+  std::array<char, 64> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), format, &time)};
 }
 
-/// A name that is free: with a number if a process keeps several versions.
-fs::path free_name_of(const fs::path& file) {
-  const auto stem = fmt::format("{}.{}", file.stem().string(), time_in_names());
-  auto name = in_folder(file, stem);
-  std::error_code unknown;
-  for (int number = 2; fs::exists(name, unknown); ++number)
-    name = in_folder(file, fmt::format("{}.{}", stem, number));
-  return name;
+/// The time in the names of kept files, for people.
+std::string universal_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return text_of("-%Y-%m-%dT%H%M%SZ", utc);
 }
 
-constexpr std::string_view kTime = "dddd-dd-ddTdddddd";  ///< in a name; d: a digit
-
-/// Whether this is STEM.TIME.EXTENSION of the file, with a number behind the time or without.
-bool is_kept_of(const fs::path& file, const fs::path& other) {
+/// The number of a file, if it is STEM.NUMBER-TIME.EXTENSION of `file`; else 0.
+int number_of(const fs::path& file, const fs::path& other) {
   const auto stem = file.stem().string() + ".";
-  auto name = other.stem().string();
+  const auto name = other.stem().string();
   std::error_code unknown;
   if (other.extension() != file.extension() || !name.starts_with(stem) ||
-      !fs::is_regular_file(other, unknown))
-    return false;
-  name.erase(0, stem.size());
-  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
-  const bool has_time =
-      name.size() >= kTime.size() &&
-      std::equal(kTime.begin(), kTime.end(), name.begin(),
-                 [&](char kind, char c) { return kind == 'd' ? is_digit(c) : kind == c; });
-  if (!has_time) return false;
-  name.erase(0, kTime.size());
-  return name.empty() ||
-         (name.size() > 1 && name[0] == '.' && std::all_of(name.begin() + 1, name.end(), is_digit));
+      name.size() <= stem.size() + kTime.size() || !fs::is_regular_file(other, unknown))
+    return 0;
+  const auto time = name.size() - kTime.size();
+  const bool has_time = std::equal(
+      kTime.begin(), kTime.end(), name.begin() + std::ptrdiff_t(time),
+      [](char kind, unsigned char c) { return kind == 'd' ? std::isdigit(c) != 0 : kind == c; });
+  int number = 0;
+  const auto [end, error] = std::from_chars(name.data() + stem.size(), name.data() + time, number);
+  return has_time && error == std::errc{} && end == name.data() + time ? std::max(number, 0) : 0;
 }
 
-/// The kept files, the newest first: by their names.
+/// The kept files, the newest first: by their numbers, because clocks go back.
 std::vector<fs::path> all_kept(const fs::path& file) {
   std::vector<fs::path> kept;
   std::error_code unknown;
-  for (const auto& entry : fs::directory_iterator(file.parent_path(), unknown))
-    if (is_kept_of(file, entry.path())) kept.push_back(entry.path());
-  // Those of one time by their numbers: "...00" before "...00.2" before "...00.10".
-  const auto second = file.stem().string().size() + 1 + kTime.size();
-  std::ranges::sort(kept, std::greater<>(), [second](const fs::path& path) {
-    const auto stem = path.stem().string();
-    return std::tuple(stem.substr(0, second), stem.size(), stem);
-  });
+  for (const auto& entry : fs::directory_iterator(fs::absolute(file).parent_path(), unknown))
+    if (number_of(file, entry.path()) > 0) kept.push_back(entry.path());
+  std::ranges::sort(kept, std::greater<>(),
+                    [&](const fs::path& path) { return number_of(file, path); });
   return kept;
+}
+
+int& least_number() {
+  static int number = 0;
+  return number;
+}
+
+/// The name that the next version gets.
+fs::path free_name_of(const fs::path& file) {
+  const int number = std::max(newest_number(file), least_number()) + 1;
+  return in_folder(file, fmt::format("{}.{:04}{}", file.stem().string(), number, universal_time()));
 }
 
 /// Copies a file to a free name, which it returns.
@@ -99,8 +101,11 @@ std::string local_time(const char* format) {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
   localtime_r(&now, &local);
-  std::array<char, 64> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), format, &local)};
+  return text_of(format, local);
+}
+
+void keep_above(std::initializer_list<fs::path> files) {
+  for (const auto& file : files) least_number() = std::max(least_number(), newest_number(file));
 }
 
 Result<std::string> write_and_keep(const fs::path& file, const std::string& text) {
@@ -114,10 +119,9 @@ Result<std::string> write_and_keep(const fs::path& file, const std::string& text
   return write_whole(file, text).map([&] { return sentence; });
 }
 
-std::string newest_time(const fs::path& file) {
+int newest_number(const fs::path& file) {
   const auto kept = all_kept(file);
-  if (kept.empty()) return {};
-  return kept.front().stem().string().substr(file.stem().string().size() + 1, kTime.size());
+  return kept.empty() ? 0 : number_of(file, kept.front());
 }
 
 Result<std::string> take_back(const fs::path& file, const IsUsable& is_usable) {

@@ -2,24 +2,29 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <string>
 
 #include "ipc/base/result.hpp"
 
-/// Files that are never lost: what it was is kept beside it, with the time in its name.
+/// Files that are never lost: what it was is kept beside it, with a number in its name.
 namespace handcast::calibrate {
 
 /// The time of now where this computer is, as strftime() prints it.
 std::string local_time(const char* format);
 
-/// Writes the text to the file. If there was one, it is kept as STEM.TIME.EXTENSION:
-/// rig.2026-11-25T001500.toml. All files that one process keeps have the same time. Returns the
-/// names of both: "rig.toml; the one before it is kept as ...". Errors: unavailable (a file cannot
-/// be written).
+/// From now on, write_and_keep() uses numbers above those of all kept versions of these files, so
+/// that what one process changes has the same number and is taken back together.
+void keep_above(std::initializer_list<std::filesystem::path> files);
+
+/// Writes the text to the file. If there was one, it is kept as STEM.NUMBER-TIME.EXTENSION,
+/// rig.0003-2026-11-25T001500Z.toml. The number orders the versions; the time (UTC) is for people,
+/// because clocks go back. Returns the names of both: "rig.toml; the one before it is kept as ...".
+/// Errors: unavailable (a file cannot be written).
 Result<std::string> write_and_keep(const std::filesystem::path& file, const std::string& text);
 
-/// The time in the name of the newest kept file; empty if none is kept.
-std::string newest_time(const std::filesystem::path& file);
+/// The number of the newest kept file; 0 if none is kept.
+int newest_number(const std::filesystem::path& file);
 
 /// Says why a kept file cannot be used.
 using IsUsable = std::function<Result<void>(const std::filesystem::path&)>;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calib/drift/correction.hpp"
+#include "config/measured.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/number_text.hpp"
 #include "ipc/client/stream.hpp"
@@ -216,6 +217,7 @@ Result<void> correct_tracker(const Options& options, const config::Rig& rig,
   if (!*wanted) return {};
   corrected.made.tracker += fmt::format("; {}: corrected by {:.1f} mm and {:.2f} degrees",
                                         local_time("%Y-%m-%d"), drift->across_mm, drift->turn_deg);
+  keep_above({rig.calibration, config::measured_file_of(options.rig_file)});
   const auto written = write_and_keep(rig.calibration, calib::print_calibration(corrected));
   if (!written) return tl::make_unexpected(written.error());
   fmt::print("the calibration is in {}\n`handcast reload` applies it; --undo takes it back\n",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/landmarks/finder/hand_finder.hpp"
@@ -218,7 +219,8 @@ handcast::Result<Report> run(const Options& options) {
   constexpr int kPlaces = 6;  // nobody waits for the next image
   landmarks::HandFinder finder(std::move(*model), options.hands,
                                has_joints ? Poses::of_a_tracker : Poses::of_landmarks, kPlaces);
-  const bool shows_progress = !options.quiet && isatty(STDERR_FILENO) && options.images.size() > 1;
+  const bool shows_progress =
+      !options.quiet && inherited::is_terminal(STDERR_FILENO) && options.images.size() > 1;
   std::vector<Result> results;
   std::string text;
   for (std::size_t i = 0; i < options.images.size(); ++i) {

@@ -2,8 +2,6 @@
 #include "services/tools/doctor/machine.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -11,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/join.hpp"
 
 namespace handcast::doctor {
@@ -74,23 +73,6 @@ Finding governor(const fs::path& root) {
           "sudo cpupower frequency-set -g performance"};
 }
 
-Finding real_time(const config::Rig& rig) {
-  int priority = 0;
-  for (const auto* service : {"camera", "pose", "landmarks", "projector"})
-    priority = std::max(priority, config::process_of(rig, service).priority);
-  if (priority == 0)
-    return {"real time", Grade::advice, "no service has a real-time priority",
-            "set camera.process.priority and projector.process.priority to 50"};
-  rlimit limit{};
-  getrlimit(RLIMIT_RTPRIO, &limit);
-  if (geteuid() == 0 || limit.rlim_cur >= static_cast<rlim_t>(priority))
-    return {"real time", Grade::good, fmt::format("priority {} is permitted", priority), ""};
-  return {
-      "real time", Grade::fault,
-      fmt::format("the rig wants priority {}, this user has {} at most", priority, limit.rlim_cur),
-      "add '@plugdev - rtprio 95' to /etc/security/limits.d/handcast.conf and log in again"};
-}
-
 Finding socket_buffers(const fs::path& root) {
   const auto bytes = number_in(root / "proc/sys/net/core/rmem_max");
   if (!bytes)
@@ -144,7 +126,10 @@ Finding disk() {
 }  // namespace
 
 std::vector<Finding> examine_machine(const config::Rig& rig, const fs::path& root) {
-  std::vector<Finding> findings{cores(), governor(root), real_time(rig), disk()};
+  std::vector<Finding> findings{cores(), governor(root), disk()};
+  for (const auto& obstacle : inherited::obstacles())
+    findings.push_back({"limits", Grade::advice, obstacle,
+                        "start handcast from a shell or a unit without this limit"});
   const bool has_aravis = rig.camera.backend == "aravis";
   if (has_aravis) {
     findings.push_back(socket_buffers(root));

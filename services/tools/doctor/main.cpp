@@ -8,9 +8,12 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/control/rig_address.hpp"
 #include "services/tools/doctor/devices.hpp"
+#include "services/tools/doctor/display.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
+#include "services/tools/doctor/real_time.hpp"
 #include "services/tools/doctor/rig_file.hpp"
 #include "services/tools/doctor/start_check.hpp"
 #include "services/tools/doctor/tracker.hpp"
@@ -34,6 +37,14 @@ std::vector<Finding> findings_of(Result<std::vector<Finding>> live) {
        "start it with `handcast up`, and call the doctor again"}};
 }
 
+std::vector<Finding> rigs_of_others() {
+  std::vector<Finding> findings;
+  for (const auto& rig : control::rigs_of_others())
+    findings.push_back({"other users", Grade::advice, rig,
+                        "stop it if it uses the same camera, tracker or projector"});
+  return findings;
+}
+
 std::vector<Finding> examine(const Options& options) {
   const auto rig = config::load_rig(options.file, options.settings);
   auto findings = examine_file(rig);
@@ -42,8 +53,9 @@ std::vector<Finding> examine(const Options& options) {
   const bool is_up = live.has_value();
   const auto asking = is_up ? Asking::not_now : Asking::now;
   for (auto more :
-       {examine_start(options.file, options.settings), examine_machine(*rig),
-        examine_devices(*rig, asking), examine_tracker(*rig, asking), findings_of(std::move(live))})
+       {examine_start(options.file, options.settings), rigs_of_others(), examine_machine(*rig),
+        std::vector{examine_real_time(*rig)}, examine_display(*rig), examine_devices(*rig, asking),
+        examine_tracker(*rig, asking), findings_of(std::move(live))})
     std::move(more.begin(), more.end(), std::back_inserter(findings));
   return findings;
 }

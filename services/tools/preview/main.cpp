@@ -142,7 +142,7 @@ Result<void> show_live(const Options& options) {
 }  // namespace handcast::preview
 
 static int complain(int exit_code, const std::string& sentence) {
-  fmt::print(stderr, "handcast preview: {}\n", printable(sentence));
+  fmt::print(stderr, "handcast preview: {}\n", handcast::printable(sentence));
   return exit_code;
 }
 

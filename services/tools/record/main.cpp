@@ -10,7 +10,7 @@
 #include "services/tools/record/recorder.hpp"
 
 static int complain(int exit_code, const std::string& sentence) {
-  fmt::print(stderr, "handcast record: {}\n", printable(sentence));
+  fmt::print(stderr, "handcast record: {}\n", handcast::printable(sentence));
   return exit_code;
 }
 

@@ -14,6 +14,7 @@
 #include "config/rig.hpp"
 #include "config/settings/frozen_file.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/client/rig_ring.hpp"
@@ -223,7 +224,7 @@ class Progress {
   double seconds() const { return ns_to_seconds(now_ns() - begin_ns_); }
 
  private:
-  bool is_terminal_ = ::isatty(STDERR_FILENO) == 1;
+  bool is_terminal_ = inherited::is_terminal(STDERR_FILENO);
   std::int64_t begin_ns_ = now_ns();
 };
 
@@ -251,9 +252,10 @@ Result<void> record(const Options& options) {
   auto feeds = open_feeds(*rig, *streams);
   if (!feeds) return tl::make_unexpected(feeds.error());
 
+  for (const auto& obstacle : inherited::obstacles()) log::warning("record: {}", obstacle);
   daemon::install_stop_signals();
-  std::signal(SIGHUP, [](int) { std::raise(SIGTERM); });  // the terminal was closed
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of write()
+  if (!inherited::is_ignored(SIGHUP))
+    std::signal(SIGHUP, [](int) { std::raise(SIGTERM); });  // the terminal was closed
   Recorder recorder(std::move(*feeds), std::move(*writer));
   const Progress progress;
   Recorder::Totals totals;

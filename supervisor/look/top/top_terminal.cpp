@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/inherited.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -91,7 +92,9 @@ std::vector<Key> keys_in(std::string_view bytes) {
   return keys;
 }
 
-bool Terminal::present() { return isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1; }
+bool Terminal::present() {
+  return isatty(STDIN_FILENO) == 1 && inherited::is_terminal(STDOUT_FILENO);
+}
 
 Terminal::Terminal() {
   std::array<int, 2> ends{-1, -1};

@@ -2,11 +2,13 @@
 // The names of rigs, and access of other users to their sockets.
 #include "ipc/control/rig_address.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 
+#include "ipc/control/choose_rig.hpp"
 #include "tests/supervisor/control/control_fixture.hpp"
 
 namespace handcast::supervisor {
@@ -47,6 +49,26 @@ TEST_F(RigAddressTest, AnAddressNamesItsRigToTheSameUserAndScope) {
   setenv(kScopeVariable, "another", 1);
   EXPECT_EQ(name_in(text), "");
   EXPECT_NE(address_of("desk").value().text, text);
+}
+
+TEST_F(RigAddressTest, ARigOfAnotherUserIsNamedWithTheWayToReachIt) {
+  if (getuid() != 0) GTEST_SKIP() << "only the superuser can become another user";
+  EXPECT_THAT(rigs_of_others(), IsEmpty());
+  const auto rig = ControlServer::listen("desk", loop_, refuse_all);
+  ASSERT_TRUE(rig);
+  EXPECT_THAT(rigs_of_others(), IsEmpty()) << "its own";
+  const auto pid = fmt::format("(pid {})", getpid());
+  EXPECT_EQ(
+      as_somebody_else([&] {
+        const auto others = rigs_of_others();
+        if (others.size() != 1) return 1;
+        for (const std::string& part : {std::string("'desk' of user root"), pid,
+                                        std::string("`sudo -u root handcast down --rig desk`")})
+          if (others[0].find(part) == std::string::npos) return 2;
+        const auto chosen = choose_rig("");
+        return chosen || chosen.error().what.find(others[0]) == std::string::npos ? 3 : 0;
+      }),
+      0);
 }
 
 TEST_F(RigAddressTest, TheNameBelongsToTheProcessThatListens) {

@@ -236,6 +236,19 @@ TEST_F(KeeperTest, AKeeperThatStoodStillDoesNotBlameItsSupervisor) {
   EXPECT_EQ(log(), "");
 }
 
+TEST_F(KeeperTest, ASignalThatWasIgnoredAtItsStartStopsNothing) {
+  const auto before = signal(SIGHUP, SIG_IGN);  // as nohup(1) does
+  keep_script(std::string(kBeats) +
+                  "note('life'); exit 7 if $ENV{HANDCAST_SUCCESSOR}; beat(0);"
+                  "select(undef, undef, undef, 1); kill 9, $$;",
+              "/usr/bin/perl");
+  signal(SIGHUP, before);
+  ASSERT_TRUE(eventually([&] { return !notes().empty(); }));
+  kill(keeper_, SIGHUP);
+  EXPECT_EQ(wait(), 7) << "the rig was not to be stopped";
+  EXPECT_THAT(notes(), ElementsAre("life", "life"));
+}
+
 TEST_F(KeeperTest, ASupervisorThatDiesWhileTheRigStopsHasNoSuccessor) {
   keep_script(std::string(kBeats) + "note('life'); beat(1); kill 9, $$;", "/usr/bin/perl");
   EXPECT_EQ(wait(), kExitBadResult);

@@ -95,9 +95,42 @@ std::string analyzed(const std::string& arguments, const UnitSpec& spec) {
 
 bool can_analyze() { return std::filesystem::exists("/usr/bin/systemd-analyze"); }
 
+TEST_P(EachUnit, WithAWindowBelongsToAGraphicalSession) {
+  auto spec = unit_of_desk(GetParam());
+  EXPECT_THAT(unit_text(spec), Not(HasSubstr("graphical")));
+  spec.window = true;
+  spec.display = ":7";
+  spec.x_authority = "/home/100%/.Xauthority";
+  const auto text = unit_text(spec);
+  if (GetParam())
+    EXPECT_THAT(text, AllOf(HasSubstr("\nEnvironment=\"DISPLAY=:7\" "
+                                      "\"XAUTHORITY=/home/100%%/.Xauthority\"\n"),
+                            HasSubstr("\nWantedBy=graphical.target\n")));
+  else
+    EXPECT_THAT(text, AllOf(HasSubstr("\nAfter=graphical-session.target\n"),
+                            HasSubstr("\nPartOf=graphical-session.target\n"),
+                            HasSubstr("\nWantedBy=graphical-session.target\n"),
+                            HasSubstr("show-environment"), Not(HasSubstr("DISPLAY="))));
+}
+
+TEST_P(EachUnit, HasTheRightToRealTimeIfAServiceWantsIt) {
+  auto spec = unit_of_desk(GetParam());
+  EXPECT_THAT(unit_text(spec), Not(HasSubstr("CAP_SYS_NICE")));
+  spec.real_time = true;
+  const auto wanted = AllOf(HasSubstr("\nAmbientCapabilities=CAP_SYS_NICE\n"),
+                            HasSubstr("\nCapabilityBoundingSet=CAP_SYS_NICE\n"));
+  if (GetParam())
+    EXPECT_THAT(unit_text(spec), wanted);
+  else
+    EXPECT_THAT(unit_text(spec), Not(wanted));
+}
+
 TEST_P(EachUnit, IsAcceptedBySystemd) {
   if (!can_analyze()) GTEST_SKIP() << "systemd-analyze is not installed";
   auto spec = unit_of_desk(GetParam());
+  spec.window = spec.real_time = true;
+  spec.display = ":0";
+  spec.x_authority = "/home/a user/.Xauthority";
   for (const char* out : {"", "/show/100% \"$kept\""}) {
     spec.out = out;
     EXPECT_THAT(analyzed("verify --man=no --recursive-errors=no", spec),

@@ -27,6 +27,17 @@ class KeptFile : public testing::Test {
     return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   }
 
+  /// The kept version with this text.
+  fs::path only_kept(const std::string& wanted) const {
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      std::ifstream stream(entry.path());
+      if (entry.path() != file_ &&
+          std::string(std::istreambuf_iterator<char>(stream), {}) == wanted)
+        return entry.path();
+    }
+    return {};
+  }
+
   const fs::path folder_ =
       fs::temp_directory_path() / ("handcast-kept-" + std::to_string(getpid()));
   const fs::path file_ = folder_ / "desk.toml";
@@ -46,6 +57,40 @@ TEST_F(KeptFile, TheLastChangeIsTakenBackAndThatToo) {
   EXPECT_EQ(text(), "one");
   ASSERT_TRUE(take_back(file_, any));
   EXPECT_EQ(text(), "two");
+}
+
+/// As `TZ` of a shell; the zone of the test afterwards.
+class Zone {
+ public:
+  explicit Zone(const char* name) { set(name); }
+  ~Zone() { set("UTC"); }
+  static void set(const char* name) {
+    setenv("TZ", name, 1);
+    tzset();
+  }
+};
+
+TEST_F(KeptFile, TheOneBeforeTheLastComesBackAlsoIfTheClockWentBack) {
+  const Zone zone("UTC-14");  // in the POSIX form, 14 h east of Greenwich
+  ASSERT_TRUE(write_and_keep(file_, "one"));
+  ASSERT_TRUE(write_and_keep(file_, "two"));
+  Zone::set("UTC+8");
+  ASSERT_TRUE(write_and_keep(file_, "three"));
+  // A version of a time when the clock was wrong.
+  fs::rename(only_kept("two"), folder_ / "desk.0002-1999-12-31T235959Z.toml");
+  ASSERT_TRUE(take_back(file_, any));
+  EXPECT_EQ(text(), "two");
+}
+
+TEST_F(KeptFile, WhatIsChangedTogetherHasOneNumber) {
+  const auto other = folder_ / "rig.toml";
+  for (const char* version : {"one", "two", "three"}) ASSERT_TRUE(write_and_keep(other, version));
+  ASSERT_TRUE(write_and_keep(file_, "one"));
+  keep_above({file_, other});
+  ASSERT_TRUE(write_and_keep(file_, "two"));
+  ASSERT_TRUE(write_and_keep(other, "four"));
+  EXPECT_EQ(newest_number(file_), 3);
+  EXPECT_EQ(newest_number(other), 3);
 }
 
 TEST_F(KeptFile, OneThatCannotBeUsedAndThatOfAnotherDeviceAreLeftAlone) {

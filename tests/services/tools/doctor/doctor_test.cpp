@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "services/tools/doctor/devices.hpp"
+#include "services/tools/doctor/display.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
+#include "services/tools/doctor/real_time.hpp"
 #include "services/tools/doctor/rig_file.hpp"
 #include "services/tools/doctor/start_check.hpp"
 #include "services/tools/doctor/tracker.hpp"
@@ -52,6 +54,41 @@ TEST_F(Computer, AGovernorThatSavesPowerIsNamedWithTheCommandThatEndsIt) {
   EXPECT_EQ(finding("cpu governor").grade, Grade::advice);
   EXPECT_THAT(finding("cpu governor").sentence, HasSubstr("powersave"));
   EXPECT_THAT(finding("cpu governor").remedy, HasSubstr("cpupower"));
+}
+
+TEST(RealTime, IsTriedForEachServiceThatWantsIt) {
+  config::Rig rig;
+  EXPECT_EQ(examine_real_time(rig, [](auto&&...) { return ""; }).grade, Grade::advice);
+  rig.camera.process.priority = 50;
+  rig.projector.process.priority = 30;
+  const auto may = [](const std::string& service, int priority) -> std::string {
+    return service == "camera" && priority == 50 ? "Operation not permitted" : "";
+  };
+  const auto denied = examine_real_time(rig, may);
+  EXPECT_EQ(denied.grade, Grade::fault);
+  EXPECT_THAT(denied.sentence, HasSubstr("camera 50 (Operation not permitted)"));
+  EXPECT_THAT(denied.sentence, Not(HasSubstr("projector")));
+  EXPECT_NE(denied.remedy, "");
+  rig.camera.process.priority = 0;
+  EXPECT_EQ(examine_real_time(rig, may).grade, Grade::good);
+}
+
+TEST_F(Computer, WhatWouldBlankLockOrSuspendIsNamedForAWindow) {
+  const auto found = [&](const std::string& check) {
+    return finding_of(examine_display(rig_, scratch_.path()), check);
+  };
+  EXPECT_EQ(found("idle").sentence, "") << "no window";
+  rig_.projector.backend = "window";
+  EXPECT_EQ(found("idle").grade, Grade::good);
+  EXPECT_EQ(found("suspend").grade, Grade::good);
+  write("proc/17/comm", "xscreensaver");
+  EXPECT_THAT(found("idle").sentence, HasSubstr("xscreensaver"));
+  write("etc/systemd/logind.conf", "[Login]\n#IdleAction=lock\nIdleAction=suspend");
+  EXPECT_THAT(found("suspend").sentence, HasSubstr("'suspend'"));
+  write("etc/systemd/logind.conf.d/handcast.conf", "IdleAction=ignore");
+  EXPECT_EQ(found("suspend").grade, Grade::good);
+  write("proc/acpi/button/lid/LID/state", "open");
+  EXPECT_THAT(found("suspend").sentence, HasSubstr("lid"));
 }
 
 TEST_F(Computer, TheNetworkIsExaminedOnlyForACameraThatMayUseIt) {
@@ -285,8 +322,9 @@ TEST(Start, WhatUpWouldRefuseIsAFaultEach) {
   EXPECT_EQ(findings[0].sentence, "camera: no such folder");
   EXPECT_TRUE(has_fault(findings));
   EXPECT_TRUE(has_fault(judge_check(100, "")));
-  const auto with_line = judge_check(100, "handcast: r.toml:\nc.toml:1:5: text needs quotes\n"
-                                          "    a = b\n        ^\nsecond\n");
+  const auto with_line = judge_check(100,
+                                     "handcast: r.toml:\nc.toml:1:5: text needs quotes\n"
+                                     "    a = b\n        ^\nsecond\n");
   ASSERT_EQ(with_line.size(), 2u);
   EXPECT_EQ(with_line[0].sentence, "c.toml:1:5: text needs quotes\n    a = b\n        ^");
 }
