@@ -22,12 +22,6 @@ namespace {
 constexpr std::size_t kSlotBytes = 256 << 10;  ///< a rig needs about 20 KB
 constexpr std::uint64_t kMagic = 0x6574617473636801;
 
-/// A saved text.
-struct Slot {
-  std::uint64_t bytes;
-  std::array<char, kSlotBytes - sizeof bytes> text;
-};
-
 tl::unexpected<Error> cannot(std::string_view what) {
   return fail(Errc::unavailable, fmt::format("the memory for the supervisor's state {}: {}", what,
                                              inherited::reason_of(errno)));
@@ -36,6 +30,12 @@ tl::unexpected<Error> cannot(std::string_view what) {
 }  // namespace
 
 struct StateMemory::Layout {
+  /// A saved text.
+  struct Slot {
+    std::uint64_t bytes;
+    std::array<char, kSlotBytes - sizeof bytes> text;
+  };
+
   std::uint64_t magic;
   std::atomic<std::uint32_t> saves;  ///< number of save(); 0: nothing is saved
   std::array<Slot, 2> slots;         ///< slots[saves % 2] is valid

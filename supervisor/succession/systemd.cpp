@@ -53,13 +53,13 @@ std::optional<Address> address_of_systemd() {
 }
 
 /// Sends one datagram, with a descriptor or without (-1). If systemd's queue is full, waits for
-/// kPatience at most, because the rig waits, too.
+/// kSendPatience at most, because the rig waits, too.
 void send_to_systemd(std::string_view state, int fd) {
   auto address = address_of_systemd();
   const UniqueFd socket(address ? ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0) : -1);
   if (!socket) return;
-  constexpr timeval kPatience{.tv_sec = 0, .tv_usec = 200'000};
-  setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
+  constexpr timeval kSendPatience{.tv_sec = 0, .tv_usec = 200'000};
+  setsockopt(socket.get(), SOL_SOCKET, SO_SNDTIMEO, &kSendPatience, sizeof kSendPatience);
 
   iovec text{.iov_base = const_cast<char*>(state.data()), .iov_len = state.size()};
   msghdr message{};
