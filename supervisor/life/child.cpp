@@ -83,7 +83,8 @@ Result<Plan> make_plan(const ChildSpec& spec) {
     plan.arguments.insert(
         plan.arguments.end(),
         {daemon::kRigOption,
-         daemon::print_mark({.address = spec.rig, .epoch_ns = spec.epoch_ns, .network = daemon::own_network()})});
+         daemon::print_mark(
+             {.address = spec.rig, .epoch_ns = spec.epoch_ns, .network = daemon::own_network()})});
 
   auto log = open_pipe(ReadBy::supervisor);
   auto ready = open_pipe(ReadBy::supervisor);

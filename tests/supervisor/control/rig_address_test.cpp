@@ -58,17 +58,17 @@ TEST_F(RigAddressTest, ARigOfAnotherUserIsNamedWithTheWayToReachIt) {
   ASSERT_TRUE(rig);
   EXPECT_THAT(rigs_of_others(), IsEmpty()) << "its own";
   const auto pid = fmt::format("(pid {})", getpid());
-  EXPECT_EQ(as_somebody_else([&] {
-              const auto others = rigs_of_others();
-              if (others.size() != 1) return 1;
-              for (const std::string& part :
-                   {std::string("'desk' of user root"), pid,
-                    std::string("`sudo -u root handcast down --rig desk`")})
-                if (others[0].find(part) == std::string::npos) return 2;
-              const auto chosen = choose_rig("");
-              return chosen || chosen.error().what.find(others[0]) == std::string::npos ? 3 : 0;
-            }),
-            0);
+  EXPECT_EQ(
+      as_somebody_else([&] {
+        const auto others = rigs_of_others();
+        if (others.size() != 1) return 1;
+        for (const std::string& part : {std::string("'desk' of user root"), pid,
+                                        std::string("`sudo -u root handcast down --rig desk`")})
+          if (others[0].find(part) == std::string::npos) return 2;
+        const auto chosen = choose_rig("");
+        return chosen || chosen.error().what.find(others[0]) == std::string::npos ? 3 : 0;
+      }),
+      0);
 }
 
 TEST_F(RigAddressTest, TheNameBelongsToTheProcessThatListens) {
