@@ -145,6 +145,10 @@ class Storm:
     def losses(self):
         """What the storm must not have ended: the light, while its keeper lives, and the rig of another user."""
         lost = []
+        limit_s = time.monotonic() + 15  # a supervisor that was just killed, or a keeper that is stopped
+        while self.keeper_lives and not services_in(self.processes()) and time.monotonic() < limit_s:
+            self.let_go_on()
+            time.sleep(0.1)
         if self.keeper_lives and not services_in(self.processes()):
             lost.append("all services")
         if self.neighbour:

@@ -249,13 +249,15 @@ class Keeper {
   }
 
   int give_up() const {
-    const bool has_services = !rig_.empty() && !find_services(rig_).empty();
+    const auto* services = "no service of its rig runs";
+    if (rig_.empty())
+      services = "if services of its rig run, `handcast down` stops them";
+    else if (!find_services(rig_).empty())
+      services =
+          "its services continue to run: `handcast up` takes them over, `handcast down` stops them";
     print_line(fmt::format(
         "handcast: the supervisor died {} times within a minute ({}) and is not started again; {}",
-        SupervisorDeaths::kDeathsInAMinute, exit_ ? exit_->describe() : "no process",
-        has_services ? "its services continue to run: `handcast up` takes them over, `handcast "
-                       "down` stops them"
-                     : "no service of its rig runs"));
+        SupervisorDeaths::kDeathsInAMinute, exit_ ? exit_->describe() : "no process", services));
     return kExitRetry;
   }
 

@@ -26,7 +26,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 constexpr uid_t kNobody = 65534;
-constexpr int kRingFd = 200;  ///< the number of the ring in the services
+constexpr int kHeldFd = 200;  ///< the number of the ring in the services
 
 /// Each test runs in a process of an ordinary user.
 class Rights : public testing::Test {
@@ -86,10 +86,10 @@ TEST_F(Rights, AServiceWithCapabilitiesIsAdoptedWithItsRingsAndItsOutput) {
   as_nobody([this] {
     auto ring = ipc::Segment::create(ipc::RingSpec::of<msg::StageMarks>("marks.camera", 8, true));
     ASSERT_TRUE(ring);
-    ASSERT_EQ(dup2(ring->fd(), kRingFd), kRingFd);
+    ASSERT_EQ(dup2(ring->fd(), kHeldFd), kHeldFd);
     auto state = StateMemory::create().value();
     auto spec = this->spec();
-    spec.rings = {{"marks.camera", kRingFd}};
+    spec.rings = {{"marks.camera", kHeldFd}};
     spec.state_fd = state.fd();
     auto child = Child::spawn(spec);
     ASSERT_TRUE(child) << child.error().what;
@@ -100,11 +100,11 @@ TEST_F(Rights, AServiceWithCapabilitiesIsAdoptedWithItsRingsAndItsOutput) {
     kept.kept_open = {child->log_fd()};
     store.keep(kept, {child->pid()});
     SavedRig saved{.name = "desk", .epoch_ns = 42};
-    saved.rings = {{"marks.camera", inode_of(kRingFd), kRingFd}};
+    saved.rings = {{"marks.camera", inode_of(kHeldFd), kHeldFd}};
     saved.services = {{"camera", child->pid(), start_ticks_of(child->pid()).value_or(0),
                        State::ready, "", "f", 0, inode_of(child->log_fd())}};
     ASSERT_TRUE(state.save(saved));
-    close(kRingFd);
+    close(kHeldFd);
 
     Result<std::optional<AdoptedRig>> adopted = std::optional<AdoptedRig>();
     for (const auto limit = Deadline::in(std::chrono::seconds(20)); !limit.passed();) {
@@ -117,7 +117,7 @@ TEST_F(Rights, AServiceWithCapabilitiesIsAdoptedWithItsRingsAndItsOutput) {
     ASSERT_THAT((*adopted)->services, SizeIs(1));
     EXPECT_EQ((*adopted)->services[0].saved.pid, child->pid());
     EXPECT_TRUE((*adopted)->services[0].log);
-    EXPECT_EQ((*adopted)->rings.at(0).fd(), kRingFd);
+    EXPECT_EQ((*adopted)->rings.at(0).fd(), kHeldFd);
     EXPECT_FALSE(child->has_ended());
     EXPECT_TRUE(store.has_ended()) << "the successor makes one of its own";
   });
