@@ -68,7 +68,8 @@ void measure_rendered(std::vector<Goal>& goals, Times& times) {
   times.screen_ms.push_back(
       timed_us([&] { full = must(calib::fit_screen(beside, kCamera, kPlane_m)); }) / 1000);
   goals.push_back({"coaxial, one board: largest error over +-100 mm",
-                   worst_px({one.projector_from_camera, glm::dvec3(0), kPlane_m}, kCoaxial), 0.5, "px"});
+                   worst_px({one.projector_from_camera, glm::dvec3(0), kPlane_m}, kCoaxial), 0.5,
+                   "px"});
   goals.push_back({"coaxial, three boards: largest error over +-100 mm",
                    worst_px(three.model, kCoaxial), 0.5, "px"});
   goals.push_back({"150 mm beside, three boards: largest error over +-100 mm",

@@ -60,6 +60,7 @@ int number_of(const fs::path& file, const fs::path& other) {
 /// The kept files, the newest first: by their numbers, because clocks go back.
 std::vector<fs::path> all_kept(const fs::path& file) {
   std::vector<fs::path> kept;
+  if (file.empty()) return kept;  // the built-in calibration
   std::error_code unknown;
   for (const auto& entry : fs::directory_iterator(fs::absolute(file).parent_path(), unknown))
     if (number_of(file, entry.path()) > 0) kept.push_back(entry.path());
@@ -105,6 +106,7 @@ std::string local_time(const char* format) {
 }
 
 void keep_above(std::initializer_list<fs::path> files) {
+  least_number() = 0;
   for (const auto& file : files) least_number() = std::max(least_number(), newest_number(file));
 }
 

@@ -13,8 +13,8 @@ namespace handcast::calibrate {
 /// The time of now where this computer is, as strftime() prints it.
 std::string local_time(const char* format);
 
-/// From now on, write_and_keep() uses numbers above those of all kept versions of these files, so
-/// that what one process changes has the same number and is taken back together.
+/// Until the next call, write_and_keep() uses numbers above those of all kept versions of these
+/// files, so that what one process changes has the same number and is taken back together.
 void keep_above(std::initializer_list<std::filesystem::path> files);
 
 /// Writes the text to the file. If there was one, it is kept as STEM.NUMBER-TIME.EXTENSION,

@@ -18,7 +18,10 @@ Result<void> any(const fs::path& /*kept*/) { return {}; }
 class KeptFile : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override {
+    fs::remove_all(folder_);
+    keep_above({});
+  }
   std::string text() const {
     std::ifstream stream(file_);
     return {std::istreambuf_iterator<char>(stream), {}};

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/settings/files.hpp"
+#include "services/tools/calibrate/kept_file.hpp"
 #include "tests/scratch.hpp"
 #include "tests/small_files.hpp"
 
@@ -186,6 +187,7 @@ TEST_F(CalibrateSession, TheFindingsOfEachStepAreKeptForTheReport) {
 }
 
 TEST_F(CalibrateSession, TheOldCalibrationIsKept) {
+  keep_above({});
   const fs::path own = scratch_.path() / "own.toml";
   std::ofstream(own) << calib::print_calibration(used_);
   rig_.calibration = own;
@@ -196,7 +198,7 @@ TEST_F(CalibrateSession, TheOldCalibrationIsKept) {
   EXPECT_EQ(calib::load_calibration(own)->camera.fx_px, 1200);
   const fs::directory_iterator folder(scratch_.path());
   const auto kept = std::find_if(begin(folder), end(folder), [](const auto& entry) {
-    return entry.path().filename().string().starts_with("own.2");
+    return entry.path().filename().string().starts_with("own.0001-");
   });
   ASSERT_NE(kept, end(folder));
   EXPECT_EQ(calib::load_calibration(kept->path())->camera.fx_px, used_.camera.fx_px);
