@@ -25,7 +25,7 @@ void follow(EmulatedWebcam& webcam, const char* file) {
 
 bool is_reader(std::string_view program) {
   return program == "handcast-camera" || program == "handcast-devices" ||
-         program == "handcast-init";
+         program == "handcast-init" || program == "handcast-doctor";
 }
 
 [[maybe_unused]] const bool from_environment = [] {
