@@ -177,6 +177,9 @@ bool may_be_missing(int joint) {
   return name == "palm" || name.ends_with("-tip") || name.ends_with("finger-metacarpal");
 }
 
+/// A scale that is rounding: a mesh stays as it is to the last bit.
+constexpr float kNoScale = 1e-4f;
+
 /// The scale of a transform without shear or reflection; 0 of others, also if a number is not
 /// finite: comparisons with NaN are false.
 float scale_of(const glm::mat4& transform) {
@@ -187,7 +190,8 @@ float scale_of(const glm::mat4& transform) {
   const glm::mat3 off = glm::transpose(axes) * axes / (scale * scale) - glm::mat3(1);
   for (int k = 0; k < 9; ++k)
     if (!(std::abs(off[k / 3][k % 3]) < kTolerance)) return 0;
-  return std::isfinite(glm::dot(transform[3], transform[3])) ? scale : 0;
+  if (!std::isfinite(glm::dot(transform[3], transform[3]))) return 0;
+  return std::abs(scale - 1) < kNoScale ? 1 : scale;
 }
 
 constexpr std::size_t kDeepest = 64;  ///< parents of a node that are looked at
