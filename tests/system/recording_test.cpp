@@ -8,6 +8,7 @@
 #include <map>
 
 #include "calib/calibration.hpp"
+#include "renderer/hand/hand_mesh.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "tests/system/running_rig.hpp"
 
@@ -91,6 +92,28 @@ TEST_F(Recording, PlayedAndRecordedAgainItIsTheSame) {
   EXPECT_GT(compare<msg::CameraFrame>("camera.frames", shift_ns), 20);
   EXPECT_GT(compare<msg::HandPoses>("pose.hands", shift_ns), 40);
   EXPECT_GT(compare<msg::Landmarks>("landmarks.hands", shift_ns), 10);
+}
+
+TEST_F(Recording, IsPlayedWhereItsPicturesAndHandModelsAreNot) {
+  ASSERT_EQ(handcast({"template", in_scratch("paint")}).exit_code, 0);
+  fs::copy_file(renderer::default_hand_file(renderer::Side::left), in_scratch("mine.glb"));
+  {
+    const auto rig = up({"--set", "content.left=" + in_scratch("paint/left.png"), "--set",
+                         "hand.left=" + in_scratch("mine.glb")});
+    wait_until_light();
+    const auto outcome = record("first", {"--seconds", "2"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
+    EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  }
+  fs::remove_all(in_scratch("paint"));
+  fs::remove(in_scratch("mine.glb"));
+  fs::rename(in_scratch("first"), in_scratch("elsewhere"));
+  const Command rig(scratch_.path(), {"play", in_scratch("elsewhere")});
+  EXPECT_TRUE(eventually([&] {
+    const auto now = status();
+    return !now.is_null() && now["rings"].contains("projection.frames") &&
+           now["rings"]["projection.frames"]["count"] > 0;
+  })) << rig.log();
 }
 
 TEST_F(Recording, TheRigKnowsNothingOfARecording) {
