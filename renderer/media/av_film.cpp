@@ -109,9 +109,9 @@ class AvFilm final : public handcast::renderer::FilmReader {
       const auto stamp = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
       if (stamp != AV_NOPTS_VALUE) stamps_.push_back(stamp);
     }
-    std::ranges::sort(stamps_);                              // packets are in the order of decoding
-    const auto [again, end] = std::ranges::unique(stamps_);  // the second halves of frames
-    stamps_.erase(again, end);
+    std::ranges::sort(stamps_);  // packets are in the order of decoding
+    const auto again = std::unique(stamps_.begin(), stamps_.end());  // the second halves of frames
+    stamps_.erase(again, stamps_.end());
     for (const auto stamp : stamps_)
       times_ns_.push_back(
           av_rescale_q(stamp - stamps_.front(), stream_->time_base, {1, 1'000'000'000}));
