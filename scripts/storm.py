@@ -271,6 +271,8 @@ def percentile(values, share):
 
 
 def main():
+    # A shell's job in the background ignores it, and a rig respects that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     options = options_parser("storm", minutes=10).parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     chance, folder, programs = random.Random(options.seed), Folder(), Programs()
