@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
@@ -15,6 +14,7 @@
 #include "renderer/hand/gltf_file.hpp"
 #include "renderer/hand/hand_axes.hpp"
 #include "renderer/hand/hand_mesh.hpp"
+#include "renderer/hand/joint_names.hpp"
 #include "renderer/hand/mesh_charts.hpp"
 #include "renderer/hand/mesh_checks.hpp"
 
@@ -126,51 +126,6 @@ class ArrayReader {
   std::optional<std::string> trouble_;
 };
 
-/// The parts of a joint's name that say which one it is, and its side.
-struct JointName {
-  std::string key;           ///< "index-proximal"
-  std::optional<Side> side;  ///< if the name says one
-};
-
-/// Reads the names of WebXR and OpenXR and what other programs make of them:
-/// "Left_Index-Finger-Tip", "r-little-finger-tip", "wrist.L", "wrist.L.001", "LeftIndexProximal".
-JointName parse_name(const std::string& name) {
-  std::vector<std::string> words(1);
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const auto c = static_cast<unsigned char>(name[i]);
-    const bool begins =
-        std::isupper(c) && i > 0 && std::islower(static_cast<unsigned char>(name[i - 1]));
-    if (begins || !std::isalnum(c)) words.emplace_back();
-    if (std::isalnum(c)) words.back() += static_cast<char>(std::tolower(c));
-  }
-  JointName parsed;
-  for (auto& word : words) {
-    constexpr std::array<std::string_view, 6> kFillers{"",   "finger", "phalanx",
-                                                       "xr", "hand",   "joint"};
-    if (word == "l" || word == "left")
-      parsed.side = Side::left;
-    else if (word == "r" || word == "right")
-      parsed.side = Side::right;
-    else if (std::ranges::find(kFillers, word) == kFillers.end() &&
-             !std::isdigit(static_cast<unsigned char>(word[0]))) {
-      if (word == "little") word = "pinky";
-      parsed.key += (parsed.key.empty() ? "" : "-") + word;
-    }
-  }
-  return parsed;
-}
-
-/// The index into kJointNames; -1 if no joint has this key.
-int joint_of(const std::string& key) {
-  static const auto keys = [] {
-    std::array<std::string, kJoints> all;
-    for (int j = 0; j < kJoints; ++j) all[j] = parse_name(std::string(kJointNames[j])).key;
-    return all;
-  }();
-  const auto found = std::ranges::find(keys, key);
-  return found == keys.end() ? -1 : static_cast<int>(found - keys.begin());
-}
-
 /// True for the palm, the tips and the metacarpals of the fingers, which move little or no skin.
 bool may_be_missing(int joint) {
   const std::string_view name = kJointNames[joint];
@@ -232,7 +187,7 @@ std::vector<std::uint8_t> joints_of(const tinygltf::Model& model, const tinygltf
   std::map<int, std::uint8_t> of_node;
   std::array<bool, kJoints> taken{};
   for (const int node : skin.joints) {
-    const auto name = parse_name(model.nodes[static_cast<std::size_t>(node)].name);
+    const auto name = parse_joint_name(model.nodes[static_cast<std::size_t>(node)].name);
     const int joint = joint_of(name.key);
     if (joint < 0) continue;
     if (name.side && *name.side != side)
@@ -281,7 +236,7 @@ void read_skeleton(ArrayReader& reader, const tinygltf::Model& model, const tiny
   std::array<float, kJoints> scales{};
   for (std::size_t k = 0; k < skin.joints.size(); ++k) {
     const int node = skin.joints[k];
-    const auto name = parse_name(model.nodes[static_cast<std::size_t>(node)].name);
+    const auto name = parse_joint_name(model.nodes[static_cast<std::size_t>(node)].name);
     const auto joint = candidate.ours[k];
     if (joint == kForeign || joint_of(name.key) != joint || found[joint]) continue;
     found[joint] = true;
