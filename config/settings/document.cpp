@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "config/settings/file_kind.hpp"
 #include "config/settings/toml_fault.hpp"
 
 namespace handcast::config {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -10,10 +11,8 @@ struct TextPlace {
   int line = 1, column = 1;
 };
 
-/// Why a text cannot be TOML at all, before it is parsed: it is in another encoding (UTF-16,
-/// Latin-1) or of another kind (a picture, JSON, a web page). "FILE:LINE:COLUMN: …" with the
-/// remedy; "" if it may be TOML.
-std::string other_kind_of_file(std::string_view text, std::string_view file);
+/// The column of a byte of a line.
+int column_of(std::string_view line, std::size_t at);
 
 /// The message about TOML that a parser refused at a place with these words: what a person probably
 /// meant ("text needs quotes: backend = \"window\""), or else the parser's words, then the line and

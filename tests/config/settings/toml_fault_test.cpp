@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "config/settings/document.hpp"
+#include "config/settings/file_kind.hpp"
 
 namespace handcast::config {
 namespace {
