@@ -37,8 +37,9 @@ std::size_t number_at(std::string_view bytes, std::size_t at, int width, bool bi
   return value;
 }
 
-/// A PNG file without the chunks of text, which the decoder would inflate: thousands of them can
-/// take minutes. Bytes that are no chunks are left to the decoder.
+/// A PNG file without the chunks of text, which the decoder would inflate (thousands of them can
+/// take minutes), without Exif, and without a last chunk that is longer than the rest of the file:
+/// the decoder asks for the memory of a chunk before it reads it.
 struct PngChunks {
   std::string kept;
   std::string exif, cicp;  ///< the contents of eXIf and cICP
@@ -49,12 +50,12 @@ struct PngChunks {
     while (bytes.size() >= kFrame) {
       const auto length = number_at(bytes, 0, 4);
       const auto type = bytes.substr(4, 4), chunk = bytes.substr(0, kFrame + length);
-      if (type != "tEXt" && type != "zTXt" && type != "iTXt") kept += chunk;
+      if (chunk.size() < kFrame + length) break;
       if (type == "eXIf") exif = bytes.substr(8, length);
       if (type == "cICP") cicp = bytes.substr(8, length);
+      if (type != "tEXt" && type != "zTXt" && type != "iTXt" && type != "eXIf") kept += chunk;
       bytes.remove_prefix(chunk.size());
     }
-    kept += bytes;
   }
 };
 
