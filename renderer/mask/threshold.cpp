@@ -21,20 +21,30 @@ constexpr int kLeastNoise = 2, kNoises = 4;
 
 using Histogram = std::array<std::uint32_t, 256>;
 
-/// Two histograms are filled alternately: equal neighbours do not wait for each other's count.
+/// Eight histograms are filled in turn: equal pixels, as those of a dark background, do not wait for
+/// each other's count.
 Histogram histogram_of(GreyView image, Rect region) {
-  Histogram even{}, odd{};
-  for (int y = region.y0; y < region.y1; y += 8) {
+  constexpr int kRows = 8, kPixels = 4, kLine = 64;
+  std::array<Histogram, 8> parts{};
+  std::size_t part = 0;
+  for (int y = region.y0; y < region.y1; y += kRows) {
     const std::uint8_t* row = image.row(y);
+    // The image is new to this core, and the processor does not foresee every eighth row.
+    if (const int soon = y + 2 * kRows; soon < region.y1)
+      for (int x = region.x0; x < region.x1; x += kLine) __builtin_prefetch(image.row(soon) + x);
     int x = region.x0;
-    for (; x + 2 < region.x1; x += 4) {
-      ++even[row[x]];
-      ++odd[row[x + 2]];
+    for (; x + kPixels + 2 < region.x1; x += 2 * kPixels, part ^= 4) {
+      ++parts[part][row[x]];
+      ++parts[part + 1][row[x + 2]];
+      ++parts[part + 2][row[x + 4]];
+      ++parts[part + 3][row[x + 6]];
     }
-    if (x < region.x1) ++even[row[x]];
+    for (; x < region.x1; x += 2) ++parts[part][row[x]];
   }
-  for (int grey = 0; grey < 256; ++grey) even[grey] += odd[grey];
-  return even;
+  Histogram all{};
+  for (const Histogram& one : parts)
+    for (std::size_t grey = 0; grey < all.size(); ++grey) all[grey] += one[grey];
+  return all;
 }
 
 /// The grey value at which the lower `share` of `count` pixels ends.

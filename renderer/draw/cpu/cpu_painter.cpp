@@ -10,6 +10,21 @@ namespace {
 
 using namespace cpu;
 
+/// The texture coordinates of the lit pixels of a drawing.
+void find_uv(const FrameBuffer& frame, std::span<const MipChain* const> textures,
+             Plane<glm::vec2>& uv) {
+  std::vector<Sampler> samplers;
+  for (const MipChain* texture : textures) samplers.emplace_back(texture);
+  for (int y = 0; y < uv.height(); ++y) {
+    const Span lit = frame.lit[static_cast<std::size_t>(y)];
+    const SurfaceId* const surface = frame.surface.row(y);
+    for (int x = lit.x0; x < lit.x1; ++x)
+      if (surface[x] != 0)
+        uv.row(y)[x] = samplers[surface[x] / 64].maps()[level_of(frame.shade.row(y)[x])].uv(
+            frame.place.row(y)[x]);
+  }
+}
+
 class CpuPainter final : public Painter {
  public:
   CpuPainter(int width_px, int height_px)
@@ -20,6 +35,7 @@ class CpuPainter final : public Painter {
         frame_(width_px, height_px) {}
 
   void draw(std::span<const DrawnHand> hands, Rect region) override {
+    filler_.forget();
     textures_.clear();
     for (const DrawnHand& hand : hands) textures_.push_back(hand.texture);
     region = region.within(width_, height_);
@@ -42,8 +58,16 @@ class CpuPainter final : public Painter {
   }
 
   View<const std::uint32_t> colour() override { return std::as_const(frame_.colour).view(); }
-  View<const glm::vec2> uv() override { return std::as_const(frame_.uv).view(); }
-  View<const SurfaceId> surface() override { return std::as_const(frame_.surface).view(); }
+  View<const glm::vec2> uv() override {
+    filler_.add_surfaces(frame_);
+    if (!uv_) uv_ = std::make_unique<Plane<glm::vec2>>(width_, height_);
+    find_uv(frame_, textures_, *uv_);
+    return std::as_const(*uv_).view();
+  }
+  View<const SurfaceId> surface() override {
+    filler_.add_surfaces(frame_);
+    return std::as_const(frame_.surface).view();
+  }
 
  private:
   int width_, height_;
@@ -53,6 +77,7 @@ class CpuPainter final : public Painter {
   Filler filler_;
   FrameBuffer frame_;
   std::unique_ptr<FrameBuffer> moved_;  ///< the target of warp(); made by the first one
+  std::unique_ptr<Plane<glm::vec2>> uv_;  ///< made by the first call of uv()
   std::vector<const MipChain*> textures_;
 };
 

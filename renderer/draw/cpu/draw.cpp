@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "renderer/base/clones.hpp"
 #include "renderer/draw/cpu/passes.hpp"
@@ -9,14 +8,21 @@
 namespace handcast::renderer::cpu {
 namespace {
 
-constexpr float kNothing = std::numeric_limits<float>::infinity();
+/// Blocks that are coloured together. What one step writes pixel by pixel is read as a vector by the
+/// next: by then it is in the cache.
+constexpr int kBatch = 16;
 
-/// A block with its colours.
-struct Coloured {
-  alignas(64) std::uint32_t colour[kLanes];
-  alignas(64) glm::vec2 uv[kLanes];
-  alignas(64) SurfaceId surface[kLanes];
-  alignas(64) std::uint16_t shade[kLanes];
+/// Blocks of one row that show something, with their colours.
+struct Batch {
+  int count = 0;
+  std::array<std::int32_t, kBatch> column;
+  std::array<const PixelBlock*, kBatch> block;
+  std::array<std::uint32_t, kBatch> hands;  ///< that the block shows, as bits
+  std::array<Lookup, kBatch> at;
+  struct alignas(64) Colours {
+    std::uint32_t rgba[kLanes];
+  };
+  std::array<Colours, kBatch> colour;
 };
 
 /// The hands that a block shows, as bits.
@@ -24,78 +30,86 @@ struct Coloured {
   std::uint32_t hands = 0;
 #pragma GCC unroll 1
   for (int i = 0; i < kLanes; ++i)
-    hands |= block.depth[i] < kNothing ? 1u << id_of_tag(block.tag[i]) / 64 : 0u;
+    hands |= block.tag[i] != 0 ? 1u << id_of_tag(block.tag[i]) / 64 : 0u;
   return hands;
 }
 
-[[gnu::always_inline]] inline void set_surface(const PixelBlock& block, Coloured& out) {
-#pragma GCC unroll 1
-  for (int i = 0; i < kLanes; ++i) {
-    const std::uint32_t light = light_of_tag(block.tag[i]);
-    out.surface[i] =
-        static_cast<SurfaceId>(block.depth[i] < kNothing ? id_of_tag(block.tag[i]) : 0);
-    out.shade[i] = shade_of(light - (light >> 8), level_of_tag(block.tag[i]));
-  }
-  float* const uv = &out.uv[0].x;
-#pragma GCC unroll 1
-  for (int i = 0; i < kLanes; ++i) {
-    uv[2 * i] = block.u[i];
-    uv[2 * i + 1] = block.v[i];
-  }
+[[gnu::always_inline]] inline bool shows(std::uint32_t tag, std::uint32_t hand) {
+  return (tag != 0) & (id_of_tag(tag) / 64 == hand);
 }
 
-/// Colours the pixels that show one hand. With the first hand, all others become dark. Lanes
-/// without light look up texel 0.
-template <bool kFirst, bool kSmooth>
-[[gnu::always_inline]] inline void set_colour(const PixelBlock& block, const Sampler sampler,
-                                              std::uint32_t hand, Coloured& out) {
-  static_assert(Lookup::kCount == kLanes);
-  Lookup at;
-  alignas(64) std::int32_t hits[kLanes];
+/// Lanes that do not show the hand look up texel 0.
+[[gnu::always_inline]] inline void find_places(const PixelBlock& block, std::int32_t stride,
+                                               std::int32_t fraction, std::uint32_t hand,
+                                               Lookup& at) {
 #pragma GCC ivdep
 #pragma GCC unroll 1
   for (int i = 0; i < kLanes; ++i) {
-    const bool hit = (block.depth[i] < kNothing) & (id_of_tag(block.tag[i]) / 64 == hand);
-    const auto mask = -static_cast<std::int32_t>(hit);
-    hits[i] = mask;
-    if constexpr (kSmooth) {
-      const auto level = static_cast<std::int32_t>(level_of_tag(block.tag[i]));
-      const Footprint place = sampler.around(block.u[i], block.v[i], level & mask);
-      at.index[i] = place.index & mask;
-      at.right[i] = place.right;
-      at.down[i] = place.down;
+    at.set(i, block.s[i], block.t[i], stride, fraction);
+    at.index[i] &= -static_cast<std::int32_t>(shows(block.tag[i], hand));
+  }
+}
+
+/// The same for a hand with texture coordinates that may be outside of the picture.
+void find_bounded_places(const PixelBlock& block, const Sampler& sampler, std::uint32_t hand,
+                         Lookup& at) {
+  for (int i = 0; i < kLanes; ++i) {
+    const std::uint32_t tag = block.tag[i];
+    if (shows(tag, hand)) {
+      const glm::vec2 place =
+          sampler.maps()[level_of(shade_of_tag(tag))].within({block.s[i], block.t[i]});
+      at.set(i, place.x, place.y, sampler.stride, sampler.fraction);
     } else {
-      at.index[i] = sampler.nearest(block.u[i], block.v[i]) & mask;
+      at.index[i] = 0;
     }
   }
-  // The barriers keep the compiler from reading by gather instructions, which take longer than
-  // single loads on most processors.
-  asm volatile("" : "+m"(at));
-#pragma GCC unroll 16
-  for (int i = 0; i < kLanes; ++i) sampler.read<kSmooth>(at, i);
-  asm volatile("" : "+m"(at));
-#pragma GCC ivdep
-#pragma GCC unroll 1
-  for (int i = 0; i < kLanes; ++i) {
-    const std::uint32_t colour = kSmooth ? mean_of(at.upper[i], at.lower[i], at.place(i))
-                                         : static_cast<std::uint32_t>(at.upper[i]);
-    const std::uint32_t lit = dimmed(colour, light_of_tag(block.tag[i])) | kOpaque;
-    const std::uint32_t old = kFirst ? 0 : out.colour[i];
-    out.colour[i] = hits[i] != 0 ? lit : old;
-  }
 }
 
-template <bool kFirst>
-[[gnu::always_inline]] inline void add_hand(const PixelBlock& block, const Sampler& sampler,
-                                            std::uint32_t hand, Coloured& out) {
-  sampler.smooth ? set_colour<kFirst, true>(block, sampler, hand, out)
-                 : set_colour<kFirst, false>(block, sampler, hand, out);
+/// Adds the colours of the pixels that show one hand. The first one makes all others dark.
+[[gnu::always_inline]] inline void set_colours(const PixelBlock& block, const Lookup& at,
+                                               std::uint32_t hand, bool is_first,
+                                               std::uint32_t* __restrict colour) {
+  alignas(64) float factor[kLanes];
+  alignas(64) std::uint32_t fresh[kLanes];
+#pragma GCC unroll 1
+  for (int i = 0; i < kLanes; ++i)
+    factor[i] = static_cast<float>(static_cast<std::int32_t>(block.tag[i] >> 8 & 0xff)) / 255;
+  mix(at, factor, fresh);
+  const std::uint32_t kept = is_first ? 0 : ~0u;
+#pragma GCC ivdep
+#pragma GCC unroll 1
+  for (int i = 0; i < kLanes; ++i)
+    colour[i] = shows(block.tag[i], hand) ? fresh[i] | kOpaque : colour[i] & kept;
+}
+
+/// Colours what a batch shows of one hand.
+[[gnu::always_inline]] inline void colour_hand(const Sampler& sampler, std::uint32_t hand,
+                                               Batch& batch) {
+  static_assert(Lookup::kCount == kLanes);
+  const std::uint32_t* const texels = sampler.texels;
+  const std::int32_t stride = sampler.stride, fraction = sampler.fraction;
+  for (int b = 0; b < batch.count; ++b) {
+    if ((batch.hands[b] >> hand & 1) == 0) continue;
+    sampler.is_bounded ? find_bounded_places(*batch.block[b], sampler, hand, batch.at[b])
+                       : find_places(*batch.block[b], stride, fraction, hand, batch.at[b]);
+  }
+  for (int b = 0; b < batch.count; ++b) {
+    if ((batch.hands[b] >> hand & 1) == 0) continue;
+    Lookup& at = batch.at[b];
+#pragma GCC unroll 16
+    for (int i = 0; i < kLanes; ++i) at.read(i, texels, stride);
+  }
+  const std::uint32_t before = (1u << hand) - 1;
+  for (int b = 0; b < batch.count; ++b)
+    if (batch.hands[b] >> hand & 1)
+      set_colours(*batch.block[b], batch.at[b], hand, (batch.hands[b] & before) == 0,
+                  batch.colour[b].rgba);
 }
 
 /// The rows of a frame that a row of blocks covers.
 struct Rows {
   std::uint32_t* colour[kBlockSide];
-  glm::vec2* uv[kBlockSide];
+  glm::vec2* place[kBlockSide];
   SurfaceId* surface[kBlockSide];
   std::uint16_t* shade[kBlockSide];
 
@@ -103,21 +117,12 @@ struct Rows {
     for (int i = 0; i < kBlockSide; ++i) {
       const int y = std::clamp(y0 / kBlockSide * kBlockSide + i, y0, y1 - 1);
       colour[i] = frame.colour.row(y);
-      uv[i] = frame.uv.row(y);
+      place[i] = frame.place.row(y);
       surface[i] = frame.surface.row(y);
       shade[i] = frame.shade.row(y);
     }
   }
 };
-
-/// Copies pixels [x, x + count) of one line of a block, from lane `lane` on.
-[[gnu::always_inline]] inline void copy_pixels(const Coloured& from, int lane, int count,
-                                               const Rows& to, int line, int x) {
-  std::memcpy(to.colour[line] + x, from.colour + lane, count * sizeof(std::uint32_t));
-  std::memcpy(static_cast<void*>(to.uv[line] + x), from.uv + lane, count * sizeof(glm::vec2));
-  std::memcpy(to.surface[line] + x, from.surface + lane, count);
-  std::memcpy(to.shade[line] + x, from.shade + lane, count * sizeof(std::uint16_t));
-}
 
 /// The part of a block within the region.
 struct Clip {
@@ -126,18 +131,52 @@ struct Clip {
   bool whole() const { return (x1 - x0) * (y1 - y0) == kLanes; }
 };
 
-[[gnu::always_inline]] inline void copy_block(const Coloured& from, const Clip clip,
-                                              const Rows& rows) {
+/// What a frame keeps of a block, in the order of its lanes.
+struct Drawn {
+  alignas(64) glm::vec2 place[kLanes];
+  alignas(64) SurfaceId surface[kLanes];
+  alignas(64) std::uint16_t shade[kLanes];
+};
+
+[[gnu::always_inline]] inline void set_drawn(const PixelBlock& block, Drawn& out) {
+#pragma GCC unroll 1
+  for (int i = 0; i < kLanes; ++i) {
+    out.surface[i] = static_cast<SurfaceId>(id_of_tag(block.tag[i]));
+    out.shade[i] = shade_of_tag(block.tag[i]);
+  }
+  float* const place = &out.place[0].x;
+#pragma GCC unroll 1
+  for (int i = 0; i < kLanes; ++i) {
+    place[2 * i] = block.s[i];
+    place[2 * i + 1] = block.t[i];
+  }
+}
+
+/// Copies pixels [x, x + count) of one line of a block, from lane `lane` on.
+[[gnu::always_inline]] inline void copy_pixels(const std::uint32_t* colour, const Drawn& drawn,
+                                               int lane, int count, const Rows& to, int line,
+                                               int x) {
+  std::memcpy(to.colour[line] + x, colour + lane, count * sizeof(std::uint32_t));
+  std::memcpy(static_cast<void*>(to.place[line] + x), drawn.place + lane,
+              count * sizeof(glm::vec2));
+  std::memcpy(to.surface[line] + x, drawn.surface + lane, count);
+  std::memcpy(to.shade[line] + x, drawn.shade + lane, count * sizeof(std::uint16_t));
+}
+
+[[gnu::always_inline]] inline void copy_block(const std::uint32_t* colour, const PixelBlock& block,
+                                              const Clip clip, const Rows& rows) {
+  Drawn drawn;
+  set_drawn(block, drawn);
   if (clip.whole()) {
 #pragma GCC unroll 4
     for (int line = 0; line < kBlockSide; ++line)
-      copy_pixels(from, line * kBlockSide, kBlockSide, rows, line, clip.x0);
+      copy_pixels(colour, drawn, line * kBlockSide, kBlockSide, rows, line, clip.x0);
     return;
   }
   for (int y = clip.y0; y < clip.y1; ++y) {
     const int line = y % kBlockSide;
-    copy_pixels(from, line * kBlockSide + clip.x0 % kBlockSide, clip.x1 - clip.x0, rows, line,
-                clip.x0);
+    copy_pixels(colour, drawn, line * kBlockSide + clip.x0 % kBlockSide, clip.x1 - clip.x0, rows,
+                line, clip.x0);
   }
 }
 
@@ -155,26 +194,37 @@ HANDCAST_CLONES void colour_blocks(const PixelBlock* blocks, Span columns, int b
   const int y0 = std::max(block_row * kBlockSide, region.y0),
             y1 = std::min((block_row + 1) * kBlockSide, region.y1);
   const Rows rows(frame, y0, y1);
-  Coloured out;
-  for (int column = columns.x0; column < columns.x1; ++column) {
-    const PixelBlock& block = blocks[column];
-    const Clip clip{std::max(column * kBlockSide, region.x0),
-                    std::min((column + 1) * kBlockSide, region.x1), y0, y1};
-    const std::uint32_t hands = hands_in(block);
-    if (hands == 0) {
-      darken_block(clip, rows);
-      continue;
+  const auto clip_of = [&](int column) {
+    return Clip{std::max(column * kBlockSide, region.x0),
+                std::min((column + 1) * kBlockSide, region.x1), y0, y1};
+  };
+  Batch batch;
+  for (int column = columns.x0; column < columns.x1;) {
+    batch.count = 0;
+    for (; column < columns.x1 && batch.count < kBatch; ++column) {
+      const std::uint32_t hands = hands_in(blocks[column]);
+      if (hands == 0) {
+        darken_block(clip_of(column), rows);
+        continue;
+      }
+      batch.column[batch.count] = column;
+      batch.block[batch.count] = blocks + column;
+      batch.hands[batch.count++] = hands;
     }
-    set_surface(block, out);
-    bool is_first = true;
-    for (std::uint32_t hand = 0; hand < samplers.size(); ++hand) {
-      if ((hands >> hand & 1) == 0) continue;
-      is_first ? add_hand<true>(block, samplers[hand], hand, out)
-               : add_hand<false>(block, samplers[hand], hand, out);
-      is_first = false;
-    }
-    copy_block(out, clip, rows);
+    for (std::uint32_t hand = 0; hand < samplers.size(); ++hand)
+      colour_hand(samplers[hand], hand, batch);
+    for (int b = 0; b < batch.count; ++b)
+      copy_block(batch.colour[b].rgba, *batch.block[b], clip_of(batch.column[b]), rows);
   }
+}
+
+/// True if all texture coordinates are in 0..1.
+HANDCAST_CLONES bool are_in_picture(std::span<const glm::vec2> uv) {
+  const float* const values = &uv.front().x;
+  std::uint32_t inside = ~0u;
+  for (std::size_t i = 0; i < 2 * uv.size(); ++i)
+    inside &= (values[i] >= 0) & (values[i] <= 1) ? ~0u : 0;
+  return inside != 0;
 }
 
 /// Fills the corners and the surface ids of a hand, per vertex.
@@ -183,7 +233,7 @@ HANDCAST_CLONES void set_corners(const DrawnHand& hand, int index, std::span<Cor
   const bool shaded = !hand.light.empty();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const glm::vec2 at = hand.position_px[i], uv = hand.mesh->uv[i];
-    const float light = shaded ? 256 * std::clamp(hand.light[i], 0.f, 1.f) : 256;
+    const float light = shaded ? 255 * std::clamp(hand.light[i], 0.f, 1.f) : 255;
     corners[i] = {snapped(at.x), snapped(at.y), hand.depth_m[i], uv.x, uv.y, light};
     ids[i] = surface_id(index, hand.mesh->chart[i]);
   }
@@ -197,9 +247,15 @@ void Drawer::place(const DrawnHand& hand, int index, Rect region) {
   placed.ids.resize(hand.mesh->vertex_count());
   set_corners(hand, index, placed.corners, placed.ids);
   const Facing facing = facing_of(placed.corners, hand.mesh->triangles, placed.areas);
-  const Sampler& sampler = samplers_.emplace_back(hand.texture);
-  placed.list = {placed.corners, hand.mesh->triangles,           placed.areas,      placed.ids,
-                 facing,         sampler.width * sampler.height, sampler.last_level};
+  const Sampler& sampler = samplers_[static_cast<std::size_t>(index)];
+  placed.list = {.corners = placed.corners,
+                 .triangles = hand.mesh->triangles,
+                 .doubled_areas = placed.areas,
+                 .ids = placed.ids,
+                 .facing = facing,
+                 .levels = sampler.maps(),
+                 .texels = sampler.size,
+                 .is_lit = !hand.light.empty()};
   placed.bins.sort(placed.list, region);
 }
 
@@ -218,6 +274,10 @@ void Drawer::colour_band(Rect band, RasterTarget& target, FrameBuffer& out) cons
 void Drawer::draw(std::span<const DrawnHand> hands, Rect region, RasterTarget& target,
                   FrameBuffer& out) {
   samplers_.clear();
+  for (const DrawnHand& hand : hands) {
+    Sampler& sampler = samplers_.emplace_back(hand.texture);
+    sampler.is_bounded = !are_in_picture(hand.mesh->uv);
+  }
   placed_.resize(std::max(placed_.size(), hands.size()));
   for (std::size_t i = 0; i < hands.size(); ++i) place(hands[i], static_cast<int>(i), region);
   for (int band = region.y0 / kBand; band * kBand < region.y1; ++band) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <bit>
+
 #include "renderer/base/clones.hpp"
 #include "renderer/base/load_eight.hpp"
 #include "renderer/draw/cpu/passes.hpp"
@@ -14,24 +16,63 @@ struct Sorting {
   std::uint8_t *lit, *unlit;
 };
 
-HANDCAST_CLONES int count_set(const std::uint8_t* pixels, int count) {
-  int set = 0;
-  for (int x = 0; x < count; ++x) set += pixels[x] & 1;
-  return set;
+/// Red, green and blue of a colour times `factor` / 256 (0..256); alpha 0.
+std::uint32_t dimmed(std::uint32_t colour, std::uint32_t factor) {
+  const std::uint32_t red_blue = ((colour & 0xff00ff) * factor >> 8) & 0xff00ff;
+  const std::uint32_t green = ((colour & 0x00ff00) * factor >> 8) & 0x00ff00;
+  return red_blue | green;
 }
 
-/// Sorts the pixels [x0, x1) into the regions. Returns true if there is light outside the hand.
-HANDCAST_CLONES bool sort_row(const Sorting row, int x0, int x1) {
-  std::uint8_t spilt = 0;
+constexpr int kVector = 64;  ///< pixels that are sorted at once
+
+/// What a row holds, lane by lane. A sum stays below 256: a row is shorter than 256 vectors.
+struct RowSums {
+  alignas(64) std::uint8_t lit[kVector] = {}, unlit[kVector] = {}, spilt[kVector] = {};
+};
+
+/// Sorts `count` pixels from `x` on into the regions, and adds them to the sums but the first
+/// `skipped`.
+[[gnu::always_inline]] inline void sort_pixels(const Sorting& row, int x, int count, int skipped,
+                                               RowSums& sums) {
 #pragma GCC ivdep
-  for (int x = x0; x < x1; ++x) {
-    const auto hand = static_cast<std::uint8_t>(row.mask[x] ? 255 : 0),
-               light = static_cast<std::uint8_t>(row.surface[x] ? 255 : 0);
-    row.lit[x] = hand & light;
-    row.unlit[x] = hand & ~light;
-    spilt |= ~hand & light;
+  for (int i = 0; i < count; ++i) {
+    const auto hand = static_cast<std::uint8_t>(row.mask[x + i] ? 255 : 0),
+               light = static_cast<std::uint8_t>(row.surface[x + i] ? 255 : 0),
+               counted = static_cast<std::uint8_t>(i >= skipped ? 255 : 0);
+    const auto lit = static_cast<std::uint8_t>(hand & light),
+               unlit = static_cast<std::uint8_t>(hand & ~light);
+    row.lit[x + i] = lit;
+    row.unlit[x + i] = unlit;
+    sums.lit[i] = static_cast<std::uint8_t>(sums.lit[i] + (lit & counted & 1));
+    sums.unlit[i] = static_cast<std::uint8_t>(sums.unlit[i] + (unlit & counted & 1));
+    sums.spilt[i] |= ~hand & light & counted;
   }
-  return spilt != 0;
+}
+
+struct RowCounts {
+  int lit = 0, unlit = 0;
+  bool is_spilt = false;  ///< there is light outside the hand
+};
+
+/// Sorts the pixels [x0, x1) of a row of `width` pixels into the regions. The two scratch planes
+/// may be written beside them.
+HANDCAST_CLONES RowCounts sort_row(const Sorting row, int x0, int x1, int width) {
+  RowSums sums;
+  if (width < kVector) {
+    sort_pixels(row, 0, x1, x0, sums);
+  } else {
+    for (int x = x0; x < x1; x += kVector) {
+      const int first = std::max(0, std::min(x, x1 - kVector));
+      sort_pixels(row, first, kVector, x - first, sums);
+    }
+  }
+  RowCounts counts;
+  for (int i = 0; i < kVector; ++i) {
+    counts.lit += sums.lit[i];
+    counts.unlit += sums.unlit[i];
+    counts.is_spilt |= sums.spilt[i] != 0;
+  }
+  return counts;
 }
 
 /// Removes light outside the hand.
@@ -40,6 +81,24 @@ HANDCAST_CLONES void darken_spilt(const Sorting row, int x0, int x1) {
   for (int x = x0; x < x1; ++x) row.surface[x] &= row.lit[x];
 #pragma GCC ivdep
   for (int x = x0; x < x1; ++x) row.colour[x] = row.lit[x] ? row.colour[x] : 0;
+}
+
+/// The bytes that are neither 0 nor 255, as their highest bits.
+std::uint64_t partial_bytes(std::uint64_t word) {
+  constexpr std::uint64_t kLow = 0x7f7f7f7f7f7f7f7f;
+  const auto set = [](std::uint64_t bytes) { return ((bytes & kLow) + kLow) | bytes; };
+  return set(word) & set(~word) & ~kLow;
+}
+
+constexpr int kSame = 32;  ///< pixels that are skipped at once
+/// True if kSame pixels are all 0 or all 255.
+bool is_uniform(const std::uint8_t* mask) {
+  std::uint64_t any = 0, all = ~std::uint64_t{0};
+  for (int i = 0; i < kSame; i += 8) {
+    any |= load_eight(mask + i);
+    all &= load_eight(mask + i);
+  }
+  return any == 0 || all == ~std::uint64_t{0};
 }
 
 /// Gives the pixels [x0, x1) of a row that are hand in part the same part of their light.
@@ -51,17 +110,16 @@ void soften_row(const std::uint8_t* mask, std::uint32_t* colour, int x0, int x1)
   };
   int x = x0;
   for (; x + 8 <= x1; x += 8) {
-    const std::uint64_t word = load_eight(mask + x);
-    if (word == 0 || word == ~std::uint64_t{0}) continue;
-    for (int i = 0; i < 8; ++i) soften(x + i);
+    while (x + kSame <= x1 && is_uniform(mask + x)) x += kSame;
+    if (x + 8 > x1) break;
+    for (std::uint64_t left = partial_bytes(load_eight(mask + x)); left != 0; left &= left - 1)
+      soften(x + std::countr_zero(left) / 8);
   }
   for (; x < x1; ++x) soften(x);
 }
 
-/// The colours of all footprints of a lookup.
-HANDCAST_CLONES void mix(const Lookup& at, std::uint32_t* __restrict colours) {
-  for (int i = 0; i < Lookup::kCount; ++i)
-    colours[i] = mean_of(at.upper[i], at.lower[i], at.place(i));
+HANDCAST_CLONES void mix_patches(const Lookup& at, const float* factor, std::uint32_t* colours) {
+  mix(at, factor, colours);
 }
 
 View<const std::uint8_t> part_of(const Plane<std::uint8_t>& plane, Rect region) {
@@ -71,21 +129,15 @@ View<const std::uint8_t> part_of(const Plane<std::uint8_t>& plane, Rect region) 
 }  // namespace
 
 FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame) {
-  // Whole vectors if there is room: the two scratch planes may be written beside the region.
-  constexpr int kVector = 64;
-  const int x0 = region.x0 & -kVector,
-            x1 = std::min((region.x1 + kVector - 1) & -kVector, mask.width);
   FillCounts counts;
   for (int y = region.y0; y < region.y1; ++y) {
     const Sorting row{mask.row(y), frame.surface.row(y), frame.colour.row(y), lit_.row(y),
                       unlit_.row(y)};
-    const bool spilt = sort_row(row, x0, x1);
+    const RowCounts found = sort_row(row, region.x0, region.x1, mask.width);
     const Span span = frame.lit[y].within(region.x0, region.x1);
-    if (!span.empty()) {
-      if (spilt) darken_spilt(row, span.x0, span.x1);
-      counts.lit += count_set(row.lit + span.x0, span.x1 - span.x0);
-    }
-    counts.dark += count_set(row.unlit + region.x0, region.width());
+    if (found.is_spilt && !span.empty()) darken_spilt(row, span.x0, span.x1);
+    counts.lit += found.lit;
+    counts.dark += found.unlit;
   }
   return counts;
 }
@@ -95,7 +147,6 @@ void Filler::make_patches(const config::Fill& settings, Rect region,
   table_.set_up(settings);
   samplers_.clear();
   for (const MipChain* texture : textures) samplers_.emplace_back(texture);
-  patches_.clear();
   for (const NearestSeed& seed :
        nearest_.find(part_of(lit_, region), part_of(unlit_, region), table_.reach_px)) {
     const std::uint32_t full = table_.strength[seed.squared_px];
@@ -104,55 +155,65 @@ void Filler::make_patches(const config::Fill& settings, Rect region,
     const int seed_x = x + seed.dx, seed_y = y + seed.dy;
     const int mirror_x = seed_x + seed.dx, mirror_y = seed_y + seed.dy;
     const SurfaceId surface = frame.surface.row(seed_y)[seed_x];
-    glm::vec2 uv = frame.uv.row(seed_y)[seed_x];
+    const std::uint16_t shade = frame.shade.row(seed_y)[seed_x];
+    const Sampler& sampler = samplers_[surface / 64];
+    const TexelMap& map = sampler.maps()[level_of(shade)];
+    glm::vec2 place = frame.place.row(seed_y)[seed_x];
     const bool inside = mirror_x >= region.x0 && mirror_x < region.x1 && mirror_y >= region.y0 &&
                         mirror_y < region.y1;
     if (inside && frame.surface.row(mirror_y)[mirror_x] == surface) {
-      const glm::vec2 step = uv - frame.uv.row(mirror_y)[mirror_x];
-      if (glm::dot(step, step) <= table_.squared_limit_uv[seed.squared_px]) uv += step;
+      glm::vec2 mirrored = frame.place.row(mirror_y)[mirror_x];
+      if (const std::uint16_t its = frame.shade.row(mirror_y)[mirror_x];
+          level_of(its) != level_of(shade))
+        mirrored = map.place(sampler.maps()[level_of(its)].uv(mirrored));
+      const glm::vec2 step = place - mirrored, step_uv = step * map.inverse_scale;
+      if (glm::dot(step_uv, step_uv) <= table_.squared_limit_uv[seed.squared_px])
+        place += step;
     }
-    const Sampler& sampler = samplers_[surface / 64];
-    const std::uint16_t shade = frame.shade.row(seed_y)[seed_x];
-    const Footprint place = sampler.smooth ? sampler.around(uv.x, uv.y, level_of(shade))
-                                           : Footprint{sampler.nearest(uv.x, uv.y), 0, 0};
-    __builtin_prefetch(sampler.texels + place.index);
-    const std::uint32_t light = light_of(shade);
-    patches_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), uv, &sampler,
-                        place, static_cast<std::uint16_t>((light + (light >> 7)) * full >> 8),
-                        shade, surface, table_.alpha[seed.squared_px]});
+    patches_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), place,
+                        static_cast<float>(light_of(shade) * full) / (255 * 256), shade, surface,
+                        table_.alpha[seed.squared_px]});
   }
 }
 
-void Filler::apply_patches(FrameBuffer& frame) const {
-  Lookup at{};
-  std::array<std::uint32_t, Lookup::kCount> colours;
-  for (std::size_t first = 0; first < patches_.size(); first += Lookup::kCount) {
-    const auto some = std::span(patches_).subspan(
-        first, std::min<std::size_t>(Lookup::kCount, patches_.size() - first));
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const Patch& patch = some[i];
-      at.index[i] = patch.place.index;
-      at.right[i] = patch.place.right;
-      at.down[i] = patch.place.down;
-      // A footprint without neighbours is that of the nearest texel.
-      patch.sampler->read<true>(at, static_cast<int>(i));
-    }
-    mix(at, colours.data());
-    for (std::size_t i = 0; i < some.size(); ++i) put(some[i], colours[i], frame);
+void Filler::apply_patches(FrameBuffer& frame) {
+  constexpr std::size_t kCount = Lookup::kCount;
+  places_.resize(std::max(places_.size(), (patches_.size() + kCount - 1) / kCount));
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    const Patch& patch = patches_[i];
+    const Sampler& sampler = samplers_[patch.surface / 64];
+    auto& [at, factor] = places_[i / kCount];
+    const auto lane = static_cast<int>(i % kCount);
+    const glm::vec2 place = sampler.maps()[level_of(patch.shade)].within(patch.place);
+    at.set(lane, place.x, place.y, sampler.stride, sampler.fraction);
+    at.read(lane, sampler.texels, sampler.stride);
+    factor[lane] = patch.factor;
+  }
+  alignas(64) std::array<std::uint32_t, kCount> colours;
+  for (std::size_t first = 0; first < patches_.size(); first += kCount) {
+    mix_patches(places_[first / kCount].at, places_[first / kCount].factor, colours.data());
+    for (std::size_t i = first; i < std::min(first + kCount, patches_.size()); ++i)
+      put(patches_[i], colours[i - first], frame);
   }
 }
 
 void Filler::put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame) {
   frame.lit[patch.y] = frame.lit[patch.y].joined({patch.x, patch.x + 1});
-  frame.colour.row(patch.y)[patch.x] = dimmed(colour, patch.factor) | std::uint32_t{patch.alpha}
-                                                                          << 24;
-  frame.uv.row(patch.y)[patch.x] = patch.uv;
-  frame.surface.row(patch.y)[patch.x] = patch.surface;
-  frame.shade.row(patch.y)[patch.x] = patch.shade;
+  frame.colour.row(patch.y)[patch.x] = colour | std::uint32_t{patch.alpha} << 24;
+}
+
+void Filler::add_surfaces(FrameBuffer& frame) {
+  for (const Patch& patch : patches_) {
+    frame.place.row(patch.y)[patch.x] = patch.place;
+    frame.surface.row(patch.y)[patch.x] = patch.surface;
+    frame.shade.row(patch.y)[patch.x] = patch.shade;
+  }
+  patches_.clear();
 }
 
 FillCounts Filler::fill(View<const std::uint8_t> mask, const config::Fill& settings, Rect region,
                         std::span<const MipChain* const> textures, FrameBuffer& frame) {
+  patches_.clear();
   FillCounts counts = sort_pixels(mask, region, frame);
   if (counts.lit != 0 && counts.dark != 0) {
     make_patches(settings, region, textures, frame);

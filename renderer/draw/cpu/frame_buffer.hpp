@@ -11,21 +11,12 @@
 
 namespace handcast::renderer::cpu {
 
-/// How a pixel reads its picture: the shading factor (0..255) and the level of the mip chain.
-/// @{
-constexpr std::uint16_t shade_of(std::uint32_t light, std::uint32_t level) {
-  return static_cast<std::uint16_t>(light | level << 8);
-}
-constexpr std::uint32_t light_of(std::uint16_t shade) { return shade & 0xff; }
-constexpr std::int32_t level_of(std::uint16_t shade) { return shade >> 8; }
-/// @}
-
 /// The drawing between the passes. All planes have the projector's size.
 struct FrameBuffer {
   /// A dark drawing.
   FrameBuffer(int width, int height)
       : colour(width, height),
-        uv(width, height),
+        place(width, height),
         surface(width, height),
         shade(width, height),
         lit(static_cast<std::size_t>(height)) {}
@@ -50,7 +41,7 @@ struct FrameBuffer {
   }
 
   Plane<std::uint32_t> colour;  ///< RGBA8, alpha 0 where dark
-  Plane<glm::vec2> uv;          ///< texture coordinates; undefined where dark
+  Plane<glm::vec2> place;       ///< in the picture, see TexelMap; undefined where dark
   Plane<SurfaceId> surface;     ///< 0 where dark
   Plane<std::uint16_t> shade;   ///< see shade_of(); undefined where dark
   std::vector<Span> lit;        ///< per row: everything outside this span is dark

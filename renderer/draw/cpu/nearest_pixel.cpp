@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 
 #include "renderer/base/clones.hpp"
@@ -116,6 +117,13 @@ HANDCAST_CLONES void scan_block(const std::int16_t* __restrict squares,
   std::copy(shift, shift + kBlock, block.shift.begin());
 }
 
+/// Makes the wanted pixels with a seed within the limit 1 and all others 0.
+HANDCAST_CLONES void keep_within(const Block& block, int limit, std::uint8_t* __restrict wanted) {
+  const auto most = static_cast<std::int16_t>(limit);
+  for (int i = 0; i < kBlock; ++i)
+    wanted[i] = static_cast<std::uint8_t>((wanted[i] != 0) & (block.best[i] <= most));
+}
+
 }  // namespace
 
 void NearestPixel::sweep_columns(View<const std::uint8_t> seeds, Rect area) {
@@ -153,27 +161,30 @@ void NearestPixel::scan_row(const std::uint8_t* wanted, int y, Rect wanted_area,
     std::memcpy(here.data(), wanted + x, std::min(kBlock, wanted_area.x1 - x));
     if (first_set(here.data(), kBlock) == kBlock) continue;
     scan_block(squares + (x - area_.x0), here.data(), reach_px, block);
-    for (int i = 0; i < kBlock; ++i) {
-      if (!here[i] || block.best[i] > limit) continue;
-      const int dx = block.shift[i];
-      const std::int8_t dy = to_seed[x - area_.x0 + i + dx];
-      found_.push_back({static_cast<std::int16_t>(x + i), static_cast<std::int16_t>(y),
-                        static_cast<std::int8_t>(dx), dy, block.best[i]});
-    }
+    keep_within(block, limit, here.data());
+    if (found_.size() < count_ + kBlock) found_.resize(2 * (count_ + kBlock));
+    for (int eight = 0; eight < kBlock; eight += 8)
+      for (std::uint64_t left = load_eight(here.data() + eight); left != 0; left &= left - 1) {
+        const int i = eight + std::countr_zero(left) / 8;
+        const int dx = block.shift[i];
+        const std::int8_t dy = to_seed[x - area_.x0 + i + dx];
+        found_[count_++] = {static_cast<std::int16_t>(x + i), static_cast<std::int16_t>(y),
+                            static_cast<std::int8_t>(dx), dy, block.best[i]};
+      }
   }
 }
 
 std::span<const NearestSeed> NearestPixel::find(View<const std::uint8_t> seeds,
                                                 View<const std::uint8_t> wanted, int reach_px) {
-  found_.clear();
+  count_ = 0;
   reach_px = std::clamp(reach_px, 0, kLargestReach);
   const Rect wanted_area = bounds_of(wanted);
-  if (wanted_area.empty()) return found_;
+  if (wanted_area.empty()) return {};
   sweep_columns(seeds, wanted_area.grown(reach_px).within(wanted.width, wanted.height));
   squares_.assign(kLargestReach + area_.width() + kBlock + kLargestReach, kFar);
   for (int y = wanted_area.y0; y < wanted_area.y1; ++y)
     scan_row(wanted.row(y), y, wanted_area, reach_px);
-  return found_;
+  return std::span(found_).first(count_);
 }
 
 }  // namespace handcast::renderer::cpu

@@ -46,7 +46,8 @@ class NearestPixel {
   std::vector<std::int16_t> squares_;  ///< of one row of to_seed_, with a margin on both sides
   int to_seed_stride_ = 0;
   Rect area_;
-  std::vector<NearestSeed> found_;
+  std::vector<NearestSeed> found_;  ///< the first count_ are those of the last call
+  std::size_t count_ = 0;
 };
 
 }  // namespace handcast::renderer::cpu

@@ -16,18 +16,27 @@ constexpr int kSubpixels = 16;
 
 /// The values interpolated over a triangle, at a pixel, or their change from pixel to pixel.
 struct Values {
-  float depth, u, v, light;
+  float depth, s, t, light;
 
   [[gnu::always_inline]] Values operator+(const Values& o) const {
-    return {depth + o.depth, u + o.u, v + o.v, light + o.light};
+    return {depth + o.depth, s + o.s, t + o.t, light + o.light};
   }
   [[gnu::always_inline]] Values operator-(const Values& o) const {
-    return {depth - o.depth, u - o.u, v - o.v, light - o.light};
+    return {depth - o.depth, s - o.s, t - o.t, light - o.light};
   }
-  [[gnu::always_inline]] Values operator*(float s) const {
-    return {depth * s, u * s, v * s, light * s};
+  [[gnu::always_inline]] Values operator*(float factor) const {
+    return {depth * factor, s * factor, t * factor, light * factor};
   }
 };
+
+[[gnu::always_inline]] inline Values smaller(const Values& a, const Values& b) {
+  return {std::min(a.depth, b.depth), std::min(a.s, b.s), std::min(a.t, b.t),
+          std::min(a.light, b.light)};
+}
+[[gnu::always_inline]] inline Values larger(const Values& a, const Values& b) {
+  return {std::max(a.depth, b.depth), std::max(a.s, b.s), std::max(a.t, b.t),
+          std::max(a.light, b.light)};
+}
 
 /// A triangle prepared for a walk from block to block. An edge value is >= 0 at the pixels on its
 /// inner side.
@@ -36,14 +45,15 @@ struct Setup {
   std::array<std::int64_t, 3> edge;                    ///< at the first pixel of the first block
   std::array<std::int32_t, 3> edge_dx, edge_dy;        ///< change per pixel
   Values start, dx, dy;                                ///< at the same pixel; change per pixel
-  std::uint32_t id_level;  ///< the parts of the tag that are equal in the whole triangle
+  Values least, most;                                  ///< of the corners
+  std::uint32_t tag;                                   ///< of a pixel without light
 };
 
 /// Pixels exactly on a top or left edge belong to the triangle; those on other edges do not.
 inline bool is_top_left(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
 
-[[gnu::always_inline]] inline Values values_of(const Corner& c) {
-  return {c.depth, c.u, c.v, c.light};
+[[gnu::always_inline]] inline Values values_of(const Corner& c, const TexelMap& map) {
+  return {c.depth, c.u * map.scale.x + map.offset.x, c.v * map.scale.y + map.offset.y, c.light};
 }
 
 /// Sets the blocks that the triangle touches. Returns false if its bounds contain no pixel centre
@@ -75,18 +85,21 @@ inline bool is_top_left(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy
 }
 
 [[gnu::always_inline]] inline void set_values(const Corner& a, const Corner& b, const Corner& c,
-                                              std::int64_t doubled_area, Setup& s) {
+                                              std::int64_t doubled_area, const TexelMap& map,
+                                              Setup& s) {
   const float scale = kSubpixels / static_cast<float>(doubled_area);
-  const Values to_b = (values_of(b) - values_of(a)) * scale,
-               to_c = (values_of(c) - values_of(a)) * scale;
+  const Values at_a = values_of(a, map), at_b = values_of(b, map), at_c = values_of(c, map),
+               to_b = (at_b - at_a) * scale, to_c = (at_c - at_a) * scale;
   s.dx = to_b * static_cast<float>(c.y - a.y) + to_c * static_cast<float>(a.y - b.y);
   s.dy = to_b * static_cast<float>(a.x - c.x) + to_c * static_cast<float>(b.x - a.x);
   const float x =
       static_cast<float>(s.first_column * kBlockSide) - static_cast<float>(a.x) / kSubpixels;
   const float y =
       static_cast<float>(s.first_row * kBlockSide) - static_cast<float>(a.y) / kSubpixels;
-  s.start = values_of(a) + s.dx * x + s.dy * y;
+  s.start = at_a + s.dx * x + s.dy * y;
   s.start.light += 0.5f;  // rounds when it is truncated
+  s.least = smaller(at_a, smaller(at_b, at_c));
+  s.most = larger(at_a, larger(at_b, at_c));
 }
 
 /// The level of a picture that has about one texel per pixel in this triangle: half the binary
@@ -98,22 +111,23 @@ inline bool is_top_left(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy
   const float ratio =
       std::abs(cross) * list.texels * (kSubpixels * kSubpixels) / static_cast<float>(doubled_area);
   const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(2 * ratio) >> 23) - 127;
-  return static_cast<std::uint32_t>(std::clamp(exponent >> 1, 0, list.last_level));
+  const int last = static_cast<int>(list.levels.size()) - 1;
+  return static_cast<std::uint32_t>(std::clamp(exponent >> 1, 0, last));
 }
 
 /// An edge value at the first pixel of a block, narrowed to 32 bits such that all lanes keep their
 /// sign: lanes differ by at most 2 * 3 * 16 * 960,000 < 2^27.
-template <bool kLarge>
+template <bool kDelicate>
 [[gnu::always_inline]] inline std::int32_t narrowed(std::int64_t edge) {
   constexpr std::int64_t kLimit = 1 << 30;
-  if constexpr (kLarge) edge = std::clamp(edge, -kLimit, kLimit);
+  if constexpr (kDelicate) edge = std::clamp(edge, -kLimit, kLimit);
   return static_cast<std::int32_t>(edge);
 }
 
 /// The difference of lane i of a block from the first pixel.
 struct LaneSteps {
   alignas(64) std::int32_t edge[3][kLanes];
-  alignas(64) float depth[kLanes], u[kLanes], v[kLanes], light[kLanes];
+  alignas(64) float depth[kLanes], s[kLanes], t[kLanes], light[kLanes];
 };
 
 [[gnu::always_inline]] inline void set_steps(const Setup& s, LaneSteps& steps) {
@@ -125,39 +139,58 @@ struct LaneSteps {
     steps.edge[1][i] = s.edge_dx[1] * x + s.edge_dy[1] * y;
     steps.edge[2][i] = s.edge_dx[2] * x + s.edge_dy[2] * y;
     steps.depth[i] = s.dx.depth * right + s.dy.depth * down;
-    steps.u[i] = s.dx.u * right + s.dy.u * down;
-    steps.v[i] = s.dx.v * right + s.dy.v * down;
+    steps.s[i] = s.dx.s * right + s.dy.s * down;
+    steps.t[i] = s.dx.t * right + s.dy.t * down;
     steps.light[i] = s.dx.light * right + s.dy.light * down;
   }
 }
 
+/// `fresh` where the bits of `hit` are set. Conditional moves would become a jump over the stores of
+/// blocks without a hit, which the processor cannot predict.
+template <class T>
+[[gnu::always_inline]] inline T chosen(std::uint32_t hit, T fresh, T old) {
+  return std::bit_cast<T>((std::bit_cast<std::uint32_t>(fresh) & hit) |
+                          (std::bit_cast<std::uint32_t>(old) & ~hit));
+}
+
+[[gnu::always_inline]] inline float bounded(float value, float least, float most) {
+  const float raised = value > least ? value : least;
+  return raised < most ? raised : most;
+}
+
 /// Tests the pixels of a block and writes those that are covered and nearest. `edge` and `at` are
-/// the values at its first pixel.
+/// the values at its first pixel. kDelicate: see is_delicate().
+template <bool kDelicate, bool kLit>
 [[gnu::always_inline]] inline void write_block(PixelBlock& block,
                                                const std::array<std::int32_t, 3> edge,
                                                const Values at, const LaneSteps& steps,
-                                               std::uint32_t id_level) {
+                                               const Setup& setup) {
 #pragma GCC ivdep
 #pragma GCC unroll 1
   for (int i = 0; i < kLanes; ++i) {
     const std::int32_t outside =
         (edge[0] + steps.edge[0][i]) | (edge[1] + steps.edge[1][i]) | (edge[2] + steps.edge[2][i]);
-    const float old_depth = block.depth[i], old_u = block.u[i], old_v = block.v[i];
+    const float old_depth = block.depth[i], old_s = block.s[i], old_t = block.t[i];
     const std::uint32_t old_tag = block.tag[i];
     const float depth = at.depth + steps.depth[i];
-    // In huge triangles rounding takes the light out of its range.
-    const std::int32_t plane = static_cast<std::int32_t>(at.light + steps.light[i]),
-                       raised = plane > 0 ? plane : 0;
-    const auto light = static_cast<std::uint32_t>(raised < 256 ? raised : 256);
-    const bool hit = (outside >= 0) & (depth <= old_depth);
-    block.depth[i] = hit ? depth : old_depth;
-    block.u[i] = hit ? at.u + steps.u[i] : old_u;
-    block.v[i] = hit ? at.v + steps.v[i] : old_v;
-    block.tag[i] = hit ? light << 8 | id_level : old_tag;
+    float s = at.s + steps.s[i], t = at.t + steps.t[i],
+          light = kLit ? at.light + steps.light[i] : 255.f;
+    if constexpr (kDelicate) {
+      s = bounded(s, setup.least.s, setup.most.s);
+      t = bounded(t, setup.least.t, setup.most.t);
+      light = bounded(light, setup.least.light, setup.most.light);
+    }
+    const auto tag =
+        static_cast<std::uint32_t>(static_cast<std::int32_t>(light)) << 8 | setup.tag;
+    const std::uint32_t hit = (outside >= 0) & (depth <= old_depth) ? ~0u : 0;
+    block.depth[i] = chosen(hit, depth, old_depth);
+    block.s[i] = chosen(hit, s, old_s);
+    block.t[i] = chosen(hit, t, old_t);
+    block.tag[i] = chosen(hit, tag, old_tag);
   }
 }
 
-template <bool kLarge>
+template <bool kDelicate, bool kLit>
 [[gnu::always_inline]] inline void fill_blocks(const Setup& s, RasterTarget& target) {
   LaneSteps steps;
   set_steps(s, steps);
@@ -170,9 +203,10 @@ template <bool kLarge>
     Values at = row_start;
     std::array<std::int64_t, 3> edge = row_edge;
     for (int column = s.first_column; column <= s.last_column; ++column) {
-      write_block(blocks[column],
-                  {narrowed<kLarge>(edge[0]), narrowed<kLarge>(edge[1]), narrowed<kLarge>(edge[2])},
-                  at, steps, s.id_level);
+      write_block<kDelicate, kLit>(
+          blocks[column],
+          {narrowed<kDelicate>(edge[0]), narrowed<kDelicate>(edge[1]), narrowed<kDelicate>(edge[2])},
+          at, steps, s);
       at = at + right;
       for (int k = 0; k < 3; ++k) edge[k] += std::int64_t{s.edge_dx[k]} * kBlockSide;
     }
@@ -181,13 +215,22 @@ template <bool kLarge>
   }
 }
 
-/// Returns true if an edge value within the bounds of the triangle may not fit into 32 bits.
-[[gnu::always_inline]] inline bool is_large(const Setup& s) {
-  constexpr std::int32_t kLargest = 900 * kSubpixels * kSubpixels;
-  for (int k = 0; k < 3; ++k) {
-    if (std::abs(s.edge_dx[k]) > kLargest || std::abs(s.edge_dy[k]) > kLargest) return true;
-  }
-  return false;
+/// True if an edge value within the bounds of the triangle may not fit into 32 bits, or if rounding
+/// may take an interpolated value out of the range of the corners by more than the border of a
+/// picture makes up for: edges longer than 900 px, or so long and thin that the sum of the steps over
+/// the bounds, in which values grow as length / height, is off by 1/8000 of the range.
+[[gnu::always_inline]] inline bool is_delicate(const Setup& s, std::int64_t doubled_area) {
+  constexpr std::int64_t kPixel = kSubpixels * kSubpixels, kLongest = 900 * kPixel,
+                         kMost = 4096 * kPixel * kPixel;  // of length^2 / height
+  std::int64_t longest = 0;
+  for (int k = 0; k < 3; ++k)
+    longest = std::max<std::int64_t>({longest, std::abs(s.edge_dx[k]), std::abs(s.edge_dy[k])});
+  return longest > kLongest || longest * longest * longest > kMost * doubled_area;
+}
+
+void clear(PixelBlock& block) {
+  std::fill_n(block.depth, kLanes, std::numeric_limits<float>::infinity());
+  std::fill_n(block.tag, kLanes, 0);
 }
 
 /// True if the triangle has an area and is turned to the side that is drawn.
@@ -224,14 +267,12 @@ RasterTarget::RasterTarget(int width, int height)
     : columns_(width / kBlockSide + 1),
       blocks_(static_cast<std::size_t>(columns_) * (height / kBlockSide + 1)),
       drawn_(static_cast<std::size_t>(height / kBlockSide + 1)) {
-  for (PixelBlock& block : blocks_)
-    std::fill_n(block.depth, kLanes, std::numeric_limits<float>::infinity());
+  std::ranges::for_each(blocks_, clear);
 }
 
 void RasterTarget::start(int first) {
   for (int y = first_; y < first_ + static_cast<int>(drawn_.size()); ++y) {
-    for (int x = drawn(y).x0; x < drawn(y).x1; ++x)
-      std::fill_n(row(y)[x].depth, kLanes, std::numeric_limits<float>::infinity());
+    for (int x = drawn(y).x0; x < drawn(y).x1; ++x) clear(row(y)[x]);
     drawn(y) = {};
   }
   first_ = first;
@@ -276,9 +317,13 @@ HANDCAST_CLONES void rasterise(const TriangleList& list, std::span<const std::ui
     set_edge(0, a, b, s);
     set_edge(1, b, c, s);
     set_edge(2, c, a, s);
-    set_values(a, b, c, std::abs(area), s);
-    s.id_level = list.ids[corner[0]] | level_of(a, b, c, std::abs(area), list) << 20;
-    is_large(s) ? fill_blocks<true>(s, target) : fill_blocks<false>(s, target);
+    const std::uint32_t level = level_of(a, b, c, std::abs(area), list);
+    set_values(a, b, c, std::abs(area), list.levels[level], s);
+    s.tag = tag_of(list.ids[corner[0]], shade_of(0, level));
+    if (is_delicate(s, std::abs(area)))
+      fill_blocks<true, true>(s, target);
+    else
+      list.is_lit ? fill_blocks<false, true>(s, target) : fill_blocks<false, false>(s, target);
   }
 }
 

@@ -25,7 +25,7 @@ struct Corner {
   /// @}
   /// Values that are interpolated linearly in the image.
   /// @{
-  float depth = 0, u = 0, v = 0, light = 0;
+  float depth = 0, u = 0, v = 0, light = 0;  // light: 0..255
   /// @}
 };
 
@@ -77,12 +77,12 @@ constexpr int kLanes = kBlockSide * kBlockSide;  ///< pixels of a block
 /// pixels wide and taller than wide, so a square uses more of a vector than a row. Lane i is pixel
 /// (i % 4, i / 4) of the block.
 struct alignas(64) PixelBlock {
-  float depth[kLanes];  ///< infinite where nothing was drawn; there the other values are undefined
-  /// Texture coordinates.
+  float depth[kLanes];  ///< infinite where nothing was drawn
+  /// The place in the picture, see TexelMap; undefined where nothing was drawn.
   /// @{
-  float u[kLanes], v[kLanes];
+  float s[kLanes], t[kLanes];
   /// @}
-  std::uint32_t tag[kLanes];  ///< id | light << 8 | level << 20
+  std::uint32_t tag[kLanes];  ///< see tag_of(); 0 where nothing was drawn
 };
 
 /// Rows of blocks in a band. An image is drawn band by band, so that what the rasteriser writes is
@@ -111,7 +111,7 @@ class RasterTarget {
   struct Pixel {
     /// The values of PixelBlock.
     /// @{
-    float depth, u, v;
+    float depth, s, t;
     std::uint32_t tag;
     /// @}
   };
@@ -119,7 +119,7 @@ class RasterTarget {
   Pixel at(int x, int y) const {
     const PixelBlock& block = row(y / kBlockSide)[x / kBlockSide];
     const int lane = y % kBlockSide * kBlockSide + x % kBlockSide;
-    return {block.depth[lane], block.u[lane], block.v[lane], block.tag[lane]};
+    return {block.depth[lane], block.s[lane], block.t[lane], block.tag[lane]};
   }
 
  private:
@@ -130,26 +130,51 @@ class RasterTarget {
   std::vector<Span> drawn_;
 };
 
-/// The parts of PixelBlock::tag.
+/// How a pixel reads its picture: its light (0..255) and the level of the mip chain.
 /// @{
-constexpr std::uint32_t id_of_tag(std::uint32_t tag) { return tag & 0xff; }
-constexpr std::uint32_t light_of_tag(std::uint32_t tag) { return tag >> 8 & 0xfff; }  ///< 0..256
-constexpr std::uint32_t level_of_tag(std::uint32_t tag) { return tag >> 20; }
+constexpr std::uint16_t shade_of(std::uint32_t light, std::uint32_t level) {
+  return static_cast<std::uint16_t>(light | level << 8);
+}
+constexpr std::uint32_t light_of(std::uint16_t shade) { return shade & 0xff; }
+constexpr std::int32_t level_of(std::uint16_t shade) { return shade >> 8; }
 /// @}
+
+/// The tag of a pixel: the id of its surface, and its shade.
+/// @{
+constexpr std::uint32_t tag_of(std::uint32_t id, std::uint16_t shade) {
+  return id | std::uint32_t{shade} << 8;
+}
+constexpr std::uint32_t id_of_tag(std::uint32_t tag) { return tag & 0xff; }
+constexpr std::uint16_t shade_of_tag(std::uint32_t tag) {
+  return static_cast<std::uint16_t>(tag >> 8);
+}
+/// @}
+
+/// Where texture coordinates lie in a picture: (s, t) = scale (u, v) + offset. For a level of a mip
+/// chain, s and t are 1/256 of a texel from the corner of the chain.
+struct TexelMap {
+  glm::vec2 scale{1}, offset{0}, inverse_scale{1};
+
+  glm::vec2 place(glm::vec2 uv) const { return scale * uv + offset; }
+  glm::vec2 uv(glm::vec2 place) const { return (place - offset) * inverse_scale; }
+  /// The place moved into the picture: texture coordinates are clamped to 0..1; NaN becomes 0.
+  glm::vec2 within(glm::vec2 place) const {
+    return {std::min(std::max(offset.x, place.x), offset.x + scale.x),
+            std::min(std::max(offset.y, place.y), offset.y + scale.y)};
+  }
+};
 
 /// The triangles of one surface, borrowed.
 struct TriangleList {
   std::span<const Corner> corners;              ///< per vertex
   std::span<const TriangleIndices> triangles;   ///< indices into `corners`
   std::span<const std::int64_t> doubled_areas;  ///< per triangle, see facing_of()
-  std::span<const std::uint8_t> ids;            ///< per vertex; a triangle has the id of its first
+  std::span<const std::uint8_t> ids;  ///< per vertex, not 0; a triangle has the id of its first
   Facing facing = Facing::both;                 ///< which triangles are drawn
-  /// Size of the picture, and its last level: a triangle reads the level with about one texel per
-  /// pixel.
-  /// @{
+  std::span<const TexelMap> levels;  ///< of the picture, at least one
+  /// Size of the picture: a triangle reads the level with about one texel per pixel.
   float texels = 0;
-  std::int32_t last_level = 0;
-  /// @}
+  bool is_lit = true;  ///< false: the light of all corners is 255
 };
 
 /// The triangles of a list by the bands that they touch, in the order of the list.

@@ -19,8 +19,8 @@ HANDCAST_CLONES bool find_sources(const PixelBlock& block, std::int32_t stride, 
 #pragma GCC unroll 1
   for (int i = 0; i < kLanes; ++i) {
     // NOLINTBEGIN(bugprone-incorrect-roundings): lround is no vector instruction
-    const auto x = static_cast<std::int32_t>(block.u[i] + 0.5f),
-               y = static_cast<std::int32_t>(block.v[i] + 0.5f);
+    const auto x = static_cast<std::int32_t>(block.s[i] + 0.5f),
+               y = static_cast<std::int32_t>(block.t[i] + 0.5f);
     // NOLINTEND(bugprone-incorrect-roundings)
     const bool inside = (block.depth[i] < std::numeric_limits<float>::infinity()) & (x >= from.x0) &
                         (x < from.x1) & (y >= from.y0) & (y < from.y1);
@@ -42,7 +42,7 @@ void fetch(const std::array<std::int32_t, kLanes>& places, int column, int row, 
     if (surface == 0) continue;
     out.surface.row(y)[x] = surface;
     out.colour.row(y)[x] = in.colour.row(0)[place];
-    out.uv.row(y)[x] = in.uv.row(0)[place];
+    out.place.row(y)[x] = in.place.row(0)[place];
     out.shade.row(y)[x] = in.shade.row(0)[place];
     out.lit[y] = out.lit[y].joined({x, x + 1});
   }
@@ -64,7 +64,13 @@ void Warper::warp(const WarpGrid& grid, Rect from, Rect region, const FrameBuffe
   cells_.set(grid, from);
   facing_of(cells_.corners, cells_.triangles, areas_);
   ids_.assign(cells_.corners.size(), 1);
-  const TriangleList cells{cells_.corners, cells_.triangles, areas_, ids_, Facing::both};
+  static constexpr TexelMap kItself;
+  const TriangleList cells{.corners = cells_.corners,
+                           .triangles = cells_.triangles,
+                           .doubled_areas = areas_,
+                           .ids = ids_,
+                           .levels = {&kItself, 1},
+                           .is_lit = false};
   bins_.sort(cells, region);
   for (int y = region.y0; y < region.y1; ++y) out.darken(y, region.x0, region.x1, {});
   for (int band = region.y0 / kBand; band * kBand < region.y1; ++band) {

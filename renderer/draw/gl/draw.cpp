@@ -42,7 +42,7 @@ cpu::Facing Drawer::place(const DrawnHand& hand, Placed* placed) {
     corner.y = cpu::snapped(at.y);
     corner.depth = hand.depth_m[i];
     placed[i] = {static_cast<float>(corner.x) / 16, static_cast<float>(corner.y) / 16, corner.depth,
-                 shaded ? 256 * std::clamp(hand.light[i], 0.f, 1.f) : 256};
+                 shaded ? 255 * std::clamp(hand.light[i], 0.f, 1.f) : 255};
   }
   return cpu::facing_of(corners_, hand.mesh->triangles, areas_);
 }

@@ -19,9 +19,9 @@ int level_here() {
 }
 
 void main() {
-  uint light = uint(clamp(uv_light.z + 0.5, 0.0, 256.0));
+  uint light = uint(clamp(uv_light.z + 0.5, 0.0, 255.0));
   int level = level_here();
   out_uv = uv_light.xy;
-  out_tag = uvec4(id, light - (light >> 8), level, 0);
-  out_colour = dimmed(picture_at(content, picture, uv_light.xy, level), light) | 0xff000000u;
+  out_tag = uvec4(id, light, level, 0);
+  out_colour = picture_at(content, picture, uv_light.xy, level, float(light) / 255.0) | 0xff000000u;
 }

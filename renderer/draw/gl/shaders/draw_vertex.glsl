@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 layout(location = 0) in vec2 uv;
 layout(location = 1) in uint chart;
-layout(location = 2) in vec4 placed;  // x and y in projector px, depth in m, light 0..256
+layout(location = 2) in vec4 placed;  // x and y in projector px, depth in m, light 0..255
 
 layout(location = 0) uniform vec2 size_px;
 layout(location = 1) uniform uint first_id;  // of the hand; the chart is added

@@ -66,12 +66,12 @@ int rows_to_lit(int x, int y) {
   return down < up ? down : -up;
 }
 
-uint content_at(uint hand, vec2 at, int level) {
+uint content_at(uint hand, vec2 at, int level, float factor) {
   switch (hand) {
-    case 0u: return picture_at(content0, pictures[0], at, level);
-    case 1u: return picture_at(content1, pictures[1], at, level);
-    case 2u: return picture_at(content2, pictures[2], at, level);
-    default: return picture_at(content3, pictures[3], at, level);
+    case 0u: return picture_at(content0, pictures[0], at, level, factor);
+    case 1u: return picture_at(content1, pictures[1], at, level, factor);
+    case 2u: return picture_at(content2, pictures[2], at, level, factor);
+    default: return picture_at(content3, pictures[3], at, level, factor);
   }
 }
 
@@ -106,10 +106,9 @@ bool fill(ivec2 at) {
     vec2 step_uv = coordinates - imageLoad(uv, mirror).rg;
     if (dot(step_uv, step_uv) <= limit.squared_limit_uv) coordinates += step_uv;
   }
-  uint texel = content_at(seen.r / 64u, coordinates, int(seen.b));
-  uint factor = (seen.g + (seen.g >> 7)) * limit.strength >> 8;
+  float factor = float(seen.g * limit.strength) / (255.0 * 256.0);
+  uint filled = content_at(seen.r / 64u, coordinates, int(seen.b), factor);
   uint share = texelFetch(mask, at, 0).r;
-  uint filled = dimmed(texel, factor);
   if (share != 255u) filled = dimmed(filled, share_factors[share]);
   imageStore(uv, at, vec4(coordinates, 0, 0));
   imageStore(tag, at, seen);

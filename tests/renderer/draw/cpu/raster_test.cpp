@@ -21,7 +21,8 @@ struct Sheet {
   TriangleList list(Facing facing) {
     facing_of(corners, triangles, areas);
     ids.assign(corners.size(), 1);
-    return {corners, triangles, areas, ids, facing};
+    static constexpr TexelMap kItself;
+    return {corners, triangles, areas, ids, facing, {&kItself, 1}};
   }
 };
 
@@ -35,7 +36,7 @@ Sheet jittered_grid(unsigned seed) {
   for (int row = 0; row < kNodes; ++row) {
     for (int column = 0; column < kNodes; ++column) {
       sheet.corners.push_back({column * kPitch + step(random) * coarse,
-                               row * kPitch + step(random) * coarse, 1, 0, 0, 256});
+                               row * kPitch + step(random) * coarse, 1, 0, 0, 255});
     }
   }
   for (int row = 0; row + 1 < kNodes; ++row) {
@@ -118,11 +119,11 @@ TEST(Raster, OfEquallyNearTrianglesTheLaterIsSeen) {
   sheet.triangles = {{0, 1, 2}, {3, 4, 5}};
   RasterTarget target(kWidth, kHeight);
   draw(sheet.list(Facing::both), target);
-  EXPECT_EQ(target.at(10, 10).u, 1);
+  EXPECT_EQ(target.at(10, 10).s, 1);
 }
 
-/// Rounding takes the plane of the light out of its range in triangles like these.
-TEST(Raster, TheLightOfASliverStaysInItsRange) {
+/// Rounding takes the planes of the values out of their range in triangles like these.
+TEST(Raster, TheValuesOfASliverStayInTheirRange) {
   constexpr Rect kScreen{0, 0, 1920, 1080};
   RasterTarget target(kScreen.x1, kScreen.y1);
   Sheet sheet;
@@ -131,7 +132,7 @@ TEST(Raster, TheLightOfASliverStaysInItsRange) {
   int drawn = 0;
   for (int i = 0; i < 300; ++i) {
     const Corner a{x(random), y(random), 1, 0, 0, 0}, b{x(random), y(random), 1, 0, 0, 0},
-        c{a.x + 2 * aside(random), a.y + aside(random), 1, 1, 1, 256};
+        c{a.x + 2 * aside(random), a.y + aside(random), 1, 1, 1, 255};
     sheet.corners = {a, b, c};
     sheet.triangles = {{0, 1, 2}};
     const TriangleList list = sheet.list(Facing::both);
@@ -145,8 +146,10 @@ TEST(Raster, TheLightOfASliverStaysInItsRange) {
         const auto pixel = target.at(column, row);
         if (std::isinf(pixel.depth)) continue;
         ++drawn;
-        ASSERT_LE(light_of_tag(pixel.tag), 256u) << i;
-        ASSERT_EQ(level_of_tag(pixel.tag), 0u) << i;
+        ASSERT_EQ(level_of(shade_of_tag(pixel.tag)), 0) << i;
+        ASSERT_EQ(id_of_tag(pixel.tag), 1u) << i;
+        ASSERT_GE(pixel.s, -0.01f) << i;
+        ASSERT_LE(pixel.s, 1.01f) << i;
       }
     }
   }
