@@ -55,7 +55,34 @@ void HandMask::clear_camera_mask(int width, int height) {
   fill_rect(camera_mask_, written_, 0);
 }
 
+/// True if `hands` are where they were sought in this image before, so that the masks are the same.
+/// Their bounds are capsules, which hardly ever decide a pixel: the light does.
+bool HandMask::was_found(const TimedImage& camera, std::span<const Sought> hands) const {
+  constexpr float kHardly_px = 0.25f;
+  if (camera.id != image_.id || camera.origin_ns != image_.origin_ns ||
+      camera.view.data != image_.view.data)
+    return false;
+  return std::ranges::equal(hands, sought_, [](const Sought& now, const Sought& before) {
+    if (now.side != before.side || now.has_landmarks != before.has_landmarks ||
+        now.then.has_value() != before.then.has_value())
+      return false;
+    if (!now.then) return true;
+    const LandmarkPoints here = sum(now.then->landmarks, now.offset_px),
+                         there = sum(before.then->landmarks, before.offset_px);
+    return std::ranges::equal(here, there, [](glm::vec2 a, glm::vec2 b) {
+      return glm::distance(a, b) < kHardly_px;
+    });
+  });
+}
+
 void HandMask::find(const TimedImage& camera, std::span<const Sought> hands) {
+  if (was_found(camera, hands)) {
+    for (std::size_t h = 0; h < hands.size(); ++h)
+      if (hands[h].then) found_[h].then = hands[h].then->landmarks;
+    return;
+  }
+  image_ = camera;
+  sought_.assign(hands.begin(), hands.end());
   clear_camera_mask(camera.view.width, camera.view.height);
   owned_hints_.clear();
   hints_.clear();

@@ -55,7 +55,8 @@ class HandMask {
   HandMask(const config::Mask& settings, const calib::Calibration& calibration,
            bool smooth = false);
 
-  /// Finds the hands in an image.
+  /// Finds the hands in an image. In the image of the last call, hands that have hardly moved are
+  /// not searched again.
   void find(const TimedImage& camera, std::span<const Sought> hands);
 
   /// True if the image of the last find() shows its hand `h`: one of its joints is lit, or the
@@ -92,6 +93,7 @@ class HandMask {
     LandmarkPoints landmarks{};  ///< image px
   };
 
+  bool was_found(const TimedImage& camera, std::span<const Sought> hands) const;
   LandmarkPoints in_image(LandmarkPoints undistorted_px) const;
   Similarity since_exposure(const Found& found, const Moved& hand) const;
   Similarity since_seen(const Found& found, const Moved& hand) const;
@@ -109,6 +111,8 @@ class HandMask {
   std::array<NearnessGrid, msg::kMaxHands> nearness_;  ///< by hand of advance()
   Image<std::uint8_t> camera_mask_, projector_mask_;
   Rect written_;  ///< part of camera_mask_ that is not 0
+  TimedImage image_;             ///< of the last search, only to be compared
+  std::vector<Sought> sought_;   ///< by the last search
   std::vector<OwnedHint> owned_hints_;
   std::vector<HandHint> hints_;
   std::vector<Found> found_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/draw/cpu/cpu_painter.hpp"
 
+#include <utility>
 #include <vector>
 
 #include "renderer/draw/cpu/passes.hpp"
@@ -35,6 +36,7 @@ class CpuPainter final : public Painter {
         frame_(width_px, height_px) {}
 
   void draw(std::span<const DrawnHand> hands, Rect region) override {
+    has_uv_ = false;
     filler_.forget();
     textures_.clear();
     for (const DrawnHand& hand : hands) textures_.push_back(hand.texture);
@@ -45,6 +47,7 @@ class CpuPainter final : public Painter {
   void warp(const WarpGrid& grid, Rect from, Rect region) override {
     region = region.within(width_, height_);
     if (region.empty()) return;
+    has_uv_ = false;
     if (!moved_) moved_ = std::make_unique<FrameBuffer>(width_, height_);
     warper_.warp(grid, from.within(width_, height_), region, frame_, target_, *moved_);
     std::swap(frame_, *moved_);
@@ -54,6 +57,7 @@ class CpuPainter final : public Painter {
                   Rect region) override {
     region = region.within(width_, height_);
     if (region.empty() || settings.method == config::FillMethod::none) return {};
+    has_uv_ = false;
     return filler_.fill(mask, settings, region, textures_, frame_);
   }
 
@@ -61,7 +65,7 @@ class CpuPainter final : public Painter {
   View<const glm::vec2> uv() override {
     filler_.add_surfaces(frame_);
     if (!uv_) uv_ = std::make_unique<Plane<glm::vec2>>(width_, height_);
-    find_uv(frame_, textures_, *uv_);
+    if (!std::exchange(has_uv_, true)) find_uv(frame_, textures_, *uv_);
     return std::as_const(*uv_).view();
   }
   View<const SurfaceId> surface() override {
@@ -78,6 +82,7 @@ class CpuPainter final : public Painter {
   FrameBuffer frame_;
   std::unique_ptr<FrameBuffer> moved_;  ///< the target of warp(); made by the first one
   std::unique_ptr<Plane<glm::vec2>> uv_;  ///< made by the first call of uv()
+  bool has_uv_ = false;                   ///< of the last pass
   std::vector<const MipChain*> textures_;
 };
 
