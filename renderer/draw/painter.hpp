@@ -85,11 +85,18 @@ class Painter {
   /// that the painter was opened with; it need not be read back by colour() then. Empty if there is
   /// none. Valid until the next pass.
   virtual std::optional<DeviceImage> device_image() { return {}; }
-  /// Texture coordinates and surface ids after the last pass. Texture coordinates are undefined
-  /// where the id is 0. Valid until the next pass.
+  /// What the pixels show after the last pass. Texture coordinates are undefined where the id is 0.
+  struct Shown {
+    View<const glm::vec2> uv;       ///< texture coordinates
+    View<const SurfaceId> surface;  ///< surface ids
+  };
+  /// Defined for the pixels whose coordinates are multiples of `step`; the fewer, the faster. Valid
+  /// until the next pass.
+  virtual Shown shown(int step) = 0;
+  /// The same for all pixels.
   /// @{
-  virtual View<const glm::vec2> uv() = 0;
-  virtual View<const SurfaceId> surface() = 0;
+  View<const glm::vec2> uv() { return shown(1).uv; }
+  View<const SurfaceId> surface() { return shown(1).surface; }
   /// @}
 
   /// A pass on another processor, and how long it took by the clock of that processor.

@@ -69,9 +69,8 @@ bool HandMask::was_found(const TimedImage& camera, std::span<const Sought> hands
     if (!now.then) return true;
     const LandmarkPoints here = sum(now.then->landmarks, now.offset_px),
                          there = sum(before.then->landmarks, before.offset_px);
-    return std::ranges::equal(here, there, [](glm::vec2 a, glm::vec2 b) {
-      return glm::distance(a, b) < kHardly_px;
-    });
+    return std::ranges::equal(
+        here, there, [](glm::vec2 a, glm::vec2 b) { return glm::distance(a, b) < kHardly_px; });
   });
 }
 

@@ -110,9 +110,9 @@ class HandMask {
   CameraLookup lookup_;
   std::array<NearnessGrid, msg::kMaxHands> nearness_;  ///< by hand of advance()
   Image<std::uint8_t> camera_mask_, projector_mask_;
-  Rect written_;  ///< part of camera_mask_ that is not 0
-  TimedImage image_;             ///< of the last search, only to be compared
-  std::vector<Sought> sought_;   ///< by the last search
+  Rect written_;                ///< part of camera_mask_ that is not 0
+  TimedImage image_;            ///< of the last search, only to be compared
+  std::vector<Sought> sought_;  ///< by the last search
   std::vector<OwnedHint> owned_hints_;
   std::vector<HandHint> hints_;
   std::vector<Found> found_;

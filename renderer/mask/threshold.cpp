@@ -21,8 +21,8 @@ constexpr int kLeastNoise = 2, kNoises = 4;
 
 using Histogram = std::array<std::uint32_t, 256>;
 
-/// Eight histograms are filled in turn: equal pixels, as those of a dark background, do not wait for
-/// each other's count.
+/// Eight histograms are filled in turn: equal pixels, as those of a dark background, do not wait
+/// for each other's count.
 Histogram histogram_of(GreyView image, Rect region) {
   constexpr int kRows = 8, kPixels = 4, kLine = 64;
   std::array<Histogram, 8> parts{};

@@ -36,8 +36,9 @@ struct Frame {
   /// RGBA8 in the projector's size, alpha 0 where it is dark. Defined inside `region` only. Empty
   /// while the image is only on a GPU.
   View<const std::uint32_t> colour;
-  /// What each pixel shows (Painter::uv(), Painter::surface()), in the projector's size and defined
-  /// inside `region` only. Empty unless Pipeline::show_surface() is on.
+  /// What the pixels show (Painter::shown()) whose coordinates are multiples of
+  /// msg::Projection::kShownStep_px, in the projector's size and defined inside `region` only.
+  /// Empty unless Pipeline::show_surface() is on.
   /// @{
   View<const glm::vec2> uv;
   View<const SurfaceId> surface;

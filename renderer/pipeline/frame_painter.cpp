@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "ipc/base/log.hpp"
+#include "ipc/msg/projection.hpp"
 #include "renderer/draw/cpu/cpu_painter.hpp"
 #include "renderer/pipeline/pipeline.hpp"
 
@@ -46,8 +47,9 @@ FillCounts FramePainter::paint(const FrameDrawing& drawing, StageClock& stages) 
 
 void FramePainter::add_surface(Frame& frame) {
   if (!shows_surface_ || frame.region.empty()) return;
-  frame.uv = painter_->uv();
-  frame.surface = painter_->surface();
+  const auto shown = painter_->shown(msg::Projection::kShownStep_px);
+  frame.uv = shown.uv;
+  frame.surface = shown.surface;
 }
 
 void FramePainter::read_back(Frame& frame) {

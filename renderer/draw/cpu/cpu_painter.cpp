@@ -11,15 +11,14 @@ namespace {
 
 using namespace cpu;
 
-/// The texture coordinates of the lit pixels of a drawing.
-void find_uv(const FrameBuffer& frame, std::span<const MipChain* const> textures,
+/// The texture coordinates of the lit pixels of a drawing whose coordinates are multiples of
+/// `step`.
+void find_uv(const FrameBuffer& frame, std::span<const Sampler> samplers, int step,
              Plane<glm::vec2>& uv) {
-  std::vector<Sampler> samplers;
-  for (const MipChain* texture : textures) samplers.emplace_back(texture);
-  for (int y = 0; y < uv.height(); ++y) {
+  for (int y = 0; y < uv.height(); y += step) {
     const Span lit = frame.lit[static_cast<std::size_t>(y)];
     const SurfaceId* const surface = frame.surface.row(y);
-    for (int x = lit.x0; x < lit.x1; ++x)
+    for (int x = (lit.x0 + step - 1) / step * step; x < lit.x1; x += step)
       if (surface[x] != 0)
         uv.row(y)[x] = samplers[surface[x] / 64].maps()[level_of(frame.shade.row(y)[x])].uv(
             frame.place.row(y)[x]);
@@ -36,18 +35,18 @@ class CpuPainter final : public Painter {
         frame_(width_px, height_px) {}
 
   void draw(std::span<const DrawnHand> hands, Rect region) override {
-    has_uv_ = false;
+    shown_step_ = 0;
     filler_.forget();
-    textures_.clear();
-    for (const DrawnHand& hand : hands) textures_.push_back(hand.texture);
+    samplers_.clear();
+    for (const DrawnHand& hand : hands) samplers_.emplace_back(hand.texture, hand.mesh->uv);
     region = region.within(width_, height_);
-    if (!region.empty()) drawer_.draw(hands, region, target_, frame_);
+    if (!region.empty()) drawer_.draw(hands, samplers_, region, target_, frame_);
   }
 
   void warp(const WarpGrid& grid, Rect from, Rect region) override {
     region = region.within(width_, height_);
     if (region.empty()) return;
-    has_uv_ = false;
+    shown_step_ = 0;
     if (!moved_) moved_ = std::make_unique<FrameBuffer>(width_, height_);
     warper_.warp(grid, from.within(width_, height_), region, frame_, target_, *moved_);
     std::swap(frame_, *moved_);
@@ -57,20 +56,19 @@ class CpuPainter final : public Painter {
                   Rect region) override {
     region = region.within(width_, height_);
     if (region.empty() || settings.method == config::FillMethod::none) return {};
-    has_uv_ = false;
-    return filler_.fill(mask, settings, region, textures_, frame_);
+    shown_step_ = 0;
+    return filler_.fill(mask, settings, region, samplers_, frame_);
   }
 
   View<const std::uint32_t> colour() override { return std::as_const(frame_.colour).view(); }
-  View<const glm::vec2> uv() override {
-    filler_.add_surfaces(frame_);
-    if (!uv_) uv_ = std::make_unique<Plane<glm::vec2>>(width_, height_);
-    if (!std::exchange(has_uv_, true)) find_uv(frame_, textures_, *uv_);
-    return std::as_const(*uv_).view();
-  }
-  View<const SurfaceId> surface() override {
-    filler_.add_surfaces(frame_);
-    return std::as_const(frame_.surface).view();
+  Shown shown(int step) override {
+    if (shown_step_ == 0 || step % shown_step_ != 0) {
+      shown_step_ = step;
+      filler_.add_surfaces(step, frame_);
+      if (!uv_) uv_ = std::make_unique<Plane<glm::vec2>>(width_, height_);
+      find_uv(frame_, samplers_, step, *uv_);
+    }
+    return {std::as_const(*uv_).view(), std::as_const(frame_.surface).view()};
   }
 
  private:
@@ -80,10 +78,10 @@ class CpuPainter final : public Painter {
   Warper warper_;
   Filler filler_;
   FrameBuffer frame_;
-  std::unique_ptr<FrameBuffer> moved_;  ///< the target of warp(); made by the first one
-  std::unique_ptr<Plane<glm::vec2>> uv_;  ///< made by the first call of uv()
-  bool has_uv_ = false;                   ///< of the last pass
-  std::vector<const MipChain*> textures_;
+  std::unique_ptr<FrameBuffer> moved_;    ///< the target of warp(); made by the first one
+  std::unique_ptr<Plane<glm::vec2>> uv_;  ///< made by the first call of shown()
+  int shown_step_ = 0;                    ///< of shown() since the last pass; 0: not called
+  std::vector<Sampler> samplers_;
 };
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace handcast::renderer::cpu {
 namespace {
 
-/// Blocks that are coloured together. What one step writes pixel by pixel is read as a vector by the
-/// next: by then it is in the cache.
+/// Blocks that are coloured together. What one step writes pixel by pixel is read as a vector by
+/// the next: by then it is in the cache.
 constexpr int kBatch = 16;
 
 /// Blocks of one row that show something, with their colours.
@@ -90,8 +90,8 @@ void find_bounded_places(const PixelBlock& block, const Sampler& sampler, std::u
   const std::int32_t stride = sampler.stride, fraction = sampler.fraction;
   for (int b = 0; b < batch.count; ++b) {
     if ((batch.hands[b] >> hand & 1) == 0) continue;
-    sampler.is_bounded ? find_bounded_places(*batch.block[b], sampler, hand, batch.at[b])
-                       : find_places(*batch.block[b], stride, fraction, hand, batch.at[b]);
+    sampler.leaves_picture ? find_bounded_places(*batch.block[b], sampler, hand, batch.at[b])
+                           : find_places(*batch.block[b], stride, fraction, hand, batch.at[b]);
   }
   for (int b = 0; b < batch.count; ++b) {
     if ((batch.hands[b] >> hand & 1) == 0) continue;
@@ -218,15 +218,6 @@ HANDCAST_CLONES void colour_blocks(const PixelBlock* blocks, Span columns, int b
   }
 }
 
-/// True if all texture coordinates are in 0..1.
-HANDCAST_CLONES bool are_in_picture(std::span<const glm::vec2> uv) {
-  const float* const values = &uv.front().x;
-  std::uint32_t inside = ~0u;
-  for (std::size_t i = 0; i < 2 * uv.size(); ++i)
-    inside &= (values[i] >= 0) & (values[i] <= 1) ? ~0u : 0;
-  return inside != 0;
-}
-
 /// Fills the corners and the surface ids of a hand, per vertex.
 HANDCAST_CLONES void set_corners(const DrawnHand& hand, int index, std::span<Corner> corners,
                                  std::span<std::uint8_t> ids) {
@@ -239,15 +230,27 @@ HANDCAST_CLONES void set_corners(const DrawnHand& hand, int index, std::span<Cor
   }
 }
 
+void colour_band(Rect band, std::span<const Sampler> samplers, RasterTarget& target,
+                 FrameBuffer& out) {
+  for (int row = band.y0 / kBlockSide; row * kBlockSide < band.y1; ++row) {
+    const Span columns = target.drawn(row),
+               pixels =
+                   Span{columns.x0 * kBlockSide, columns.x1 * kBlockSide}.within(band.x0, band.x1);
+    for (int y = std::max(row * kBlockSide, band.y0); y < std::min((row + 1) * kBlockSide, band.y1);
+         ++y)
+      out.darken(y, band.x0, band.x1, pixels);
+    if (!columns.empty()) colour_blocks(target.row(row), columns, row, band, samplers, out);
+  }
+}
+
 }  // namespace
 
-void Drawer::place(const DrawnHand& hand, int index, Rect region) {
+void Drawer::place(const DrawnHand& hand, const Sampler& sampler, int index, Rect region) {
   Placed& placed = placed_[static_cast<std::size_t>(index)];
   placed.corners.resize(hand.mesh->vertex_count());
   placed.ids.resize(hand.mesh->vertex_count());
   set_corners(hand, index, placed.corners, placed.ids);
   const Facing facing = facing_of(placed.corners, hand.mesh->triangles, placed.areas);
-  const Sampler& sampler = samplers_[static_cast<std::size_t>(index)];
   placed.list = {.corners = placed.corners,
                  .triangles = hand.mesh->triangles,
                  .doubled_areas = placed.areas,
@@ -259,33 +262,17 @@ void Drawer::place(const DrawnHand& hand, int index, Rect region) {
   placed.bins.sort(placed.list, region);
 }
 
-void Drawer::colour_band(Rect band, RasterTarget& target, FrameBuffer& out) const {
-  for (int row = band.y0 / kBlockSide; row * kBlockSide < band.y1; ++row) {
-    const Span columns = target.drawn(row),
-               pixels =
-                   Span{columns.x0 * kBlockSide, columns.x1 * kBlockSide}.within(band.x0, band.x1);
-    for (int y = std::max(row * kBlockSide, band.y0); y < std::min((row + 1) * kBlockSide, band.y1);
-         ++y)
-      out.darken(y, band.x0, band.x1, pixels);
-    if (!columns.empty()) colour_blocks(target.row(row), columns, row, band, samplers_, out);
-  }
-}
-
-void Drawer::draw(std::span<const DrawnHand> hands, Rect region, RasterTarget& target,
-                  FrameBuffer& out) {
-  samplers_.clear();
-  for (const DrawnHand& hand : hands) {
-    Sampler& sampler = samplers_.emplace_back(hand.texture);
-    sampler.is_bounded = !are_in_picture(hand.mesh->uv);
-  }
+void Drawer::draw(std::span<const DrawnHand> hands, std::span<const Sampler> samplers, Rect region,
+                  RasterTarget& target, FrameBuffer& out) {
   placed_.resize(std::max(placed_.size(), hands.size()));
-  for (std::size_t i = 0; i < hands.size(); ++i) place(hands[i], static_cast<int>(i), region);
+  for (std::size_t i = 0; i < hands.size(); ++i)
+    place(hands[i], samplers[i], static_cast<int>(i), region);
   for (int band = region.y0 / kBand; band * kBand < region.y1; ++band) {
     const Rect part = Rect{region.x0, band * kBand, region.x1, (band + 1) * kBand}.overlap(region);
     target.start(band * kBandRows);
     for (std::size_t i = 0; i < hands.size(); ++i)
       rasterise(placed_[i].list, placed_[i].bins.of_band(band), part, target);
-    colour_band(part, target, out);
+    colour_band(part, samplers, target, out);
   }
 }
 

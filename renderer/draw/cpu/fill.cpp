@@ -143,10 +143,8 @@ FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, Frame
 }
 
 void Filler::make_patches(const config::Fill& settings, Rect region,
-                          std::span<const MipChain* const> textures, const FrameBuffer& frame) {
+                          std::span<const Sampler> samplers, const FrameBuffer& frame) {
   table_.set_up(settings);
-  samplers_.clear();
-  for (const MipChain* texture : textures) samplers_.emplace_back(texture);
   for (const NearestSeed& seed :
        nearest_.find(part_of(lit_, region), part_of(unlit_, region), table_.reach_px)) {
     const std::uint32_t full = table_.strength[seed.squared_px];
@@ -156,7 +154,7 @@ void Filler::make_patches(const config::Fill& settings, Rect region,
     const int mirror_x = seed_x + seed.dx, mirror_y = seed_y + seed.dy;
     const SurfaceId surface = frame.surface.row(seed_y)[seed_x];
     const std::uint16_t shade = frame.shade.row(seed_y)[seed_x];
-    const Sampler& sampler = samplers_[surface / 64];
+    const Sampler& sampler = samplers[surface / 64];
     const TexelMap& map = sampler.maps()[level_of(shade)];
     glm::vec2 place = frame.place.row(seed_y)[seed_x];
     const bool inside = mirror_x >= region.x0 && mirror_x < region.x1 && mirror_y >= region.y0 &&
@@ -167,8 +165,7 @@ void Filler::make_patches(const config::Fill& settings, Rect region,
           level_of(its) != level_of(shade))
         mirrored = map.place(sampler.maps()[level_of(its)].uv(mirrored));
       const glm::vec2 step = place - mirrored, step_uv = step * map.inverse_scale;
-      if (glm::dot(step_uv, step_uv) <= table_.squared_limit_uv[seed.squared_px])
-        place += step;
+      if (glm::dot(step_uv, step_uv) <= table_.squared_limit_uv[seed.squared_px]) place += step;
     }
     patches_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), place,
                         static_cast<float>(light_of(shade) * full) / (255 * 256), shade, surface,
@@ -176,12 +173,12 @@ void Filler::make_patches(const config::Fill& settings, Rect region,
   }
 }
 
-void Filler::apply_patches(FrameBuffer& frame) {
+void Filler::apply_patches(std::span<const Sampler> samplers, FrameBuffer& frame) {
   constexpr std::size_t kCount = Lookup::kCount;
   places_.resize(std::max(places_.size(), (patches_.size() + kCount - 1) / kCount));
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     const Patch& patch = patches_[i];
-    const Sampler& sampler = samplers_[patch.surface / 64];
+    const Sampler& sampler = samplers[patch.surface / 64];
     auto& [at, factor] = places_[i / kCount];
     const auto lane = static_cast<int>(i % kCount);
     const glm::vec2 place = sampler.maps()[level_of(patch.shade)].within(patch.place);
@@ -202,22 +199,22 @@ void Filler::put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame) {
   frame.colour.row(patch.y)[patch.x] = colour | std::uint32_t{patch.alpha} << 24;
 }
 
-void Filler::add_surfaces(FrameBuffer& frame) {
+void Filler::add_surfaces(int step, FrameBuffer& frame) const {
   for (const Patch& patch : patches_) {
+    if (patch.x % step != 0 || patch.y % step != 0) continue;
     frame.place.row(patch.y)[patch.x] = patch.place;
     frame.surface.row(patch.y)[patch.x] = patch.surface;
     frame.shade.row(patch.y)[patch.x] = patch.shade;
   }
-  patches_.clear();
 }
 
 FillCounts Filler::fill(View<const std::uint8_t> mask, const config::Fill& settings, Rect region,
-                        std::span<const MipChain* const> textures, FrameBuffer& frame) {
+                        std::span<const Sampler> samplers, FrameBuffer& frame) {
   patches_.clear();
   FillCounts counts = sort_pixels(mask, region, frame);
   if (counts.lit != 0 && counts.dark != 0) {
-    make_patches(settings, region, textures, frame);
-    apply_patches(frame);
+    make_patches(settings, region, samplers, frame);
+    apply_patches(samplers, frame);
     counts.filled = static_cast<int>(patches_.size());
     counts.dark -= counts.filled;
   }

@@ -23,8 +23,10 @@ namespace handcast::renderer::cpu {
 /// Draws in two steps: geometry into a raster target, then colour for the visible pixels.
 class Drawer {
  public:
-  /// Draws `hands` into `region` of `out`. `target` is overwritten, a band at a time.
-  void draw(std::span<const DrawnHand> hands, Rect region, RasterTarget& target, FrameBuffer& out);
+  /// Draws `hands` into `region` of `out`. `samplers`: of their pictures. `target` is overwritten,
+  /// a band at a time.
+  void draw(std::span<const DrawnHand> hands, std::span<const Sampler> samplers, Rect region,
+            RasterTarget& target, FrameBuffer& out);
 
  private:
   /// A hand in the projector's image.
@@ -35,11 +37,9 @@ class Drawer {
     TriangleList list;
     TriangleBins bins;
   };
-  void place(const DrawnHand& hand, int index, Rect region);
-  void colour_band(Rect band, RasterTarget& target, FrameBuffer& out) const;
+  void place(const DrawnHand& hand, const Sampler& sampler, int index, Rect region);
 
   std::vector<Placed> placed_;  ///< by index; kept for their memory
-  std::vector<Sampler> samplers_;
 };
 
 /// Rasterises the moved cells of a grid with their source positions as the interpolated values,
@@ -72,15 +72,15 @@ class Filler {
   /// For drawings of the given size in pixels.
   Filler(int width, int height) : lit_(width, height), unlit_(width, height) {}
 
-  /// Removes light outside `mask` and fills inside it, in `region` of `frame`. `textures`: one per
-  /// hand of the drawing; nullptr: white.
+  /// Removes light outside `mask` and fills inside it, in `region` of `frame`. `samplers`: those of
+  /// the drawing.
   FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings, Rect region,
-                  std::span<const MipChain* const> textures, FrameBuffer& frame);
+                  std::span<const Sampler> samplers, FrameBuffer& frame);
   /// Forgets the last fill: its frame is drawn anew.
   void forget() { patches_.clear(); }
-  /// Adds to `frame`, after a fill, what the filled pixels show. Their colours are there already, and
-  /// nothing else is needed to project them.
-  void add_surfaces(FrameBuffer& frame);
+  /// Adds to `frame`, after a fill, what the filled pixels show whose coordinates are multiples of
+  /// `step`. Their colours are there already, and nothing else is needed to project them.
+  void add_surfaces(int step, FrameBuffer& frame) const;
 
  private:
   struct Patch {
@@ -92,14 +92,13 @@ class Filler {
     std::uint8_t alpha;
   };
   FillCounts sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame);
-  void make_patches(const config::Fill& settings, Rect region,
-                    std::span<const MipChain* const> textures, const FrameBuffer& frame);
-  void apply_patches(FrameBuffer& frame);
+  void make_patches(const config::Fill& settings, Rect region, std::span<const Sampler> samplers,
+                    const FrameBuffer& frame);
+  void apply_patches(std::span<const Sampler> samplers, FrameBuffer& frame);
   static void put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame);
 
   Plane<std::uint8_t> lit_, unlit_;  ///< regions D and C of the paper, 255 or 0
   NearestPixel nearest_;
-  std::vector<Sampler> samplers_;
   std::vector<Patch> patches_;
   /// The places of the patches, 16 at once, and their factors. All are read before the first is
   /// mixed, so that no vector waits for what was just written number by number.

@@ -145,8 +145,8 @@ struct LaneSteps {
   }
 }
 
-/// `fresh` where the bits of `hit` are set. Conditional moves would become a jump over the stores of
-/// blocks without a hit, which the processor cannot predict.
+/// `fresh` where the bits of `hit` are set. Conditional moves would become a jump over the stores
+/// of blocks without a hit, which the processor cannot predict.
 template <class T>
 [[gnu::always_inline]] inline T chosen(std::uint32_t hit, T fresh, T old) {
   return std::bit_cast<T>((std::bit_cast<std::uint32_t>(fresh) & hit) |
@@ -180,8 +180,7 @@ template <bool kDelicate, bool kLit>
       t = bounded(t, setup.least.t, setup.most.t);
       light = bounded(light, setup.least.light, setup.most.light);
     }
-    const auto tag =
-        static_cast<std::uint32_t>(static_cast<std::int32_t>(light)) << 8 | setup.tag;
+    const auto tag = static_cast<std::uint32_t>(static_cast<std::int32_t>(light)) << 8 | setup.tag;
     const std::uint32_t hit = (outside >= 0) & (depth <= old_depth) ? ~0u : 0;
     block.depth[i] = chosen(hit, depth, old_depth);
     block.s[i] = chosen(hit, s, old_s);
@@ -203,10 +202,10 @@ template <bool kDelicate, bool kLit>
     Values at = row_start;
     std::array<std::int64_t, 3> edge = row_edge;
     for (int column = s.first_column; column <= s.last_column; ++column) {
-      write_block<kDelicate, kLit>(
-          blocks[column],
-          {narrowed<kDelicate>(edge[0]), narrowed<kDelicate>(edge[1]), narrowed<kDelicate>(edge[2])},
-          at, steps, s);
+      write_block<kDelicate, kLit>(blocks[column],
+                                   {narrowed<kDelicate>(edge[0]), narrowed<kDelicate>(edge[1]),
+                                    narrowed<kDelicate>(edge[2])},
+                                   at, steps, s);
       at = at + right;
       for (int k = 0; k < 3; ++k) edge[k] += std::int64_t{s.edge_dx[k]} * kBlockSide;
     }
@@ -217,8 +216,8 @@ template <bool kDelicate, bool kLit>
 
 /// True if an edge value within the bounds of the triangle may not fit into 32 bits, or if rounding
 /// may take an interpolated value out of the range of the corners by more than the border of a
-/// picture makes up for: edges longer than 900 px, or so long and thin that the sum of the steps over
-/// the bounds, in which values grow as length / height, is off by 1/8000 of the range.
+/// picture makes up for: edges longer than 900 px, or so long and thin that the sum of the steps
+/// over the bounds, in which values grow as length / height, is off by 1/8000 of the range.
 [[gnu::always_inline]] inline bool is_delicate(const Setup& s, std::int64_t doubled_area) {
   constexpr std::int64_t kPixel = kSubpixels * kSubpixels, kLongest = 900 * kPixel,
                          kMost = 4096 * kPixel * kPixel;  // of length^2 / height

@@ -170,8 +170,8 @@ struct TriangleList {
   std::span<const TriangleIndices> triangles;   ///< indices into `corners`
   std::span<const std::int64_t> doubled_areas;  ///< per triangle, see facing_of()
   std::span<const std::uint8_t> ids;  ///< per vertex, not 0; a triangle has the id of its first
-  Facing facing = Facing::both;                 ///< which triangles are drawn
-  std::span<const TexelMap> levels;  ///< of the picture, at least one
+  Facing facing = Facing::both;       ///< which triangles are drawn
+  std::span<const TexelMap> levels;   ///< of the picture, at least one
   /// Size of the picture: a triangle reads the level with about one texel per pixel.
   float texels = 0;
   bool is_lit = true;  ///< false: the light of all corners is 255

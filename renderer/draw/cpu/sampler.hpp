@@ -22,8 +22,8 @@ constexpr std::uint32_t kOpaque = 0xff000000;
 /// A mip chain, borrowed. Places are those of TexelMap.
 class Sampler {
  public:
-  /// nullptr: white.
-  explicit Sampler(const MipChain* picture) {
+  /// nullptr: white. `uv`: where it will be read, but for steps beyond.
+  explicit Sampler(const MipChain* picture, std::span<const glm::vec2> uv = {}) {
     static const MipChain kWhite;
     if (picture == nullptr) picture = &kWhite;
     texels = picture->texels().data;
@@ -32,6 +32,10 @@ class Sampler {
     size = static_cast<float>(picture->width()) * static_cast<float>(picture->height());
     levels_ = picture->levels();
     for (int level = 0; level < levels_; ++level) maps_[level] = map_of(*picture, level);
+    bool is_inside = true;
+    for (const glm::vec2 at : uv)
+      is_inside &= (at.x >= 0) & (at.x <= 1) & (at.y >= 0) & (at.y <= 1);
+    leaves_picture = !is_inside;
   }
 
   /// Where texture coordinates lie in each level.
@@ -41,7 +45,7 @@ class Sampler {
   float size;                   ///< texels of level 0
   /// The bits of a place that are within a texel: 255, or 0 if the nearest texel is read.
   std::int32_t fraction;
-  bool is_bounded = false;  ///< places may be outside of the picture, and are moved into it
+  bool leaves_picture;  ///< texture coordinates are not all in 0..1
 
  private:
   /// The border of a chain is one texel wide. Smooth: the texel to the left of a place and above it
@@ -104,15 +108,16 @@ union alignas(64) HalfLanes {
     levels.lane[i] = static_cast<std::uint32_t>(texels[i] >> shift) & 0xff00ff;
 #pragma GCC unroll 1
   for (int i = 0; i < 2 * Lookup::kCount; ++i) {
-    const auto square = static_cast<std::uint16_t>(levels.half[i] * levels.half[i] + levels.half[i]);
-    sums.half[i] = static_cast<std::uint16_t>(
-        sums.half[i] + (std::uint32_t{square} * weights.half[i] >> 16));
+    const auto square =
+        static_cast<std::uint16_t>(levels.half[i] * levels.half[i] + levels.half[i]);
+    sums.half[i] =
+        static_cast<std::uint16_t>(sums.half[i] + (std::uint32_t{square} * weights.half[i] >> 16));
   }
 }
 
-/// The means of the texels of all places by their weights, times `factor` (0..1); alpha 0. The light
-/// of a level is taken as its square, which is near to sRGB: the mean of black and white is 180
-/// instead of 188.
+/// The means of the texels of all places by their weights, times `factor` (0..1); alpha 0. The
+/// light of a level is taken as its square, which is near to sRGB: the mean of black and white is
+/// 180 instead of 188.
 [[gnu::always_inline]] inline void mix(const Lookup& at, const float* __restrict factor,
                                        std::uint32_t* __restrict colour) {
   // The weights of both halves of a lane, of 65,280: 256 times 255, so that all of it fits.
@@ -139,7 +144,8 @@ union alignas(64) HalfLanes {
   for (int i = 0; i < Lookup::kCount; ++i) {
     const float half = 0.5f - 0.5f * factor[i];  // rounds, and solves level * (level + 1)
     const auto level = [&](std::uint32_t sum) {
-      const float root = std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum)) * kAll + (0.25f + kLost));
+      const float root =
+          std::sqrt(static_cast<float>(static_cast<std::int32_t>(sum)) * kAll + (0.25f + kLost));
       return static_cast<std::uint32_t>(static_cast<std::int32_t>(root * factor[i] + half));
     };
     colour[i] = level(red_blue.lane[i] & 0xffff) | level(green.lane[i] & 0xffff) << 8 |

@@ -75,8 +75,7 @@ class Painting final : public GlPainter {
     if (context_->lost()) return {};
     return DeviceImage{frame_.colour.name(), size_px_.x, size_px_.y};
   }
-  View<const glm::vec2> uv() override { return read_back_.uv(frame_); }
-  View<const SurfaceId> surface() override { return read_back_.surface(frame_); }
+  Shown shown(int /*step*/) override { return {read_back_.uv(frame_), read_back_.surface(frame_)}; }
 
   std::optional<Error> failure() const override {
     if (!context_->lost()) return {};

@@ -25,8 +25,7 @@ class FailingPainter final : public Painter {
   View<const std::uint32_t> colour() override {
     return draws_ <= good_frames_ ? cpu_->colour() : std::as_const(dark_).view();
   }
-  View<const glm::vec2> uv() override { return cpu_->uv(); }
-  View<const SurfaceId> surface() override { return cpu_->surface(); }
+  Shown shown(int step) override { return cpu_->shown(step); }
   std::optional<Error> failure() const override {
     if (draws_ <= good_frames_) return {};
     return Error{Errc::unavailable, "painter test: the GPU was lost"};

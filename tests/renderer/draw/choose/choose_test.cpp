@@ -33,8 +33,7 @@ class SlowPainter final : public Painter {
     return last = cpu_->fill(mask, settings, region);
   }
   View<const std::uint32_t> colour() override { return cpu_->colour(); }
-  View<const glm::vec2> uv() override { return cpu_->uv(); }
-  View<const SurfaceId> surface() override { return cpu_->surface(); }
+  Shown shown(int step) override { return cpu_->shown(step); }
 
   FillCounts last;
 
