@@ -27,10 +27,11 @@ void find_uv(const FrameBuffer& frame, std::span<const Sampler> samplers, int st
 
 class CpuPainter final : public Painter {
  public:
-  CpuPainter(int width_px, int height_px)
+  CpuPainter(int width_px, int height_px, int threads)
       : width_(width_px),
         height_(height_px),
-        target_(width_px, kBand),
+        crew_(threads - 1),
+        targets_(static_cast<std::size_t>(crew_.size()), RasterTarget(width_px, kBand)),
         filler_(width_px, height_px),
         frame_(width_px, height_px) {}
 
@@ -40,7 +41,7 @@ class CpuPainter final : public Painter {
     samplers_.clear();
     for (const DrawnHand& hand : hands) samplers_.emplace_back(hand.texture, hand.mesh->uv);
     region = region.within(width_, height_);
-    if (!region.empty()) drawer_.draw(hands, samplers_, region, target_, frame_);
+    if (!region.empty()) drawer_.draw(hands, samplers_, region, crew_, targets_, frame_);
   }
 
   void warp(const WarpGrid& grid, Rect from, Rect region) override {
@@ -48,7 +49,7 @@ class CpuPainter final : public Painter {
     if (region.empty()) return;
     shown_step_ = 0;
     if (!moved_) moved_ = std::make_unique<FrameBuffer>(width_, height_);
-    warper_.warp(grid, from.within(width_, height_), region, frame_, target_, *moved_);
+    warper_.warp(grid, from.within(width_, height_), region, frame_, targets_.front(), *moved_);
     std::swap(frame_, *moved_);
   }
 
@@ -73,7 +74,8 @@ class CpuPainter final : public Painter {
 
  private:
   int width_, height_;
-  RasterTarget target_;
+  Crew crew_;
+  std::vector<RasterTarget> targets_;  ///< one for each thread of the crew
   Drawer drawer_;
   Warper warper_;
   Filler filler_;
@@ -86,8 +88,8 @@ class CpuPainter final : public Painter {
 
 }  // namespace
 
-std::unique_ptr<Painter> make_cpu_painter(int width_px, int height_px) {
-  return std::make_unique<CpuPainter>(width_px, height_px);
+std::unique_ptr<Painter> make_cpu_painter(int width_px, int height_px, int threads) {
+  return std::make_unique<CpuPainter>(width_px, height_px, threads);
 }
 
 }  // namespace handcast::renderer

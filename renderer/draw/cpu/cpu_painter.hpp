@@ -6,8 +6,8 @@
 
 namespace handcast::renderer {
 
-/// The back end that draws on one core of the processor: the reference for the passes of all
-/// others.
-std::unique_ptr<Painter> make_cpu_painter(int width_px, int height_px);
+/// The back end that draws on the processor: the reference for the passes of all others. With more
+/// than one thread, the pixels are the same, and the others sleep but for the step draw.
+std::unique_ptr<Painter> make_cpu_painter(int width_px, int height_px, int threads = 1);
 
 }  // namespace handcast::renderer

@@ -263,17 +263,22 @@ void Drawer::place(const DrawnHand& hand, const Sampler& sampler, int index, Rec
 }
 
 void Drawer::draw(std::span<const DrawnHand> hands, std::span<const Sampler> samplers, Rect region,
-                  RasterTarget& target, FrameBuffer& out) {
+                  Crew& crew, std::span<RasterTarget> targets, FrameBuffer& out) {
+  crew.rouse();
   placed_.resize(std::max(placed_.size(), hands.size()));
   for (std::size_t i = 0; i < hands.size(); ++i)
     place(hands[i], samplers[i], static_cast<int>(i), region);
-  for (int band = region.y0 / kBand; band * kBand < region.y1; ++band) {
-    const Rect part = Rect{region.x0, band * kBand, region.x1, (band + 1) * kBand}.overlap(region);
+  const int first = region.y0 / kBand, last = (region.y1 - 1) / kBand;
+  auto draw_band = [&](int part, int worker) {
+    const int band = first + part;
+    RasterTarget& target = targets[static_cast<std::size_t>(worker)];
+    const Rect rows = Rect{region.x0, band * kBand, region.x1, (band + 1) * kBand}.overlap(region);
     target.start(band * kBandRows);
     for (std::size_t i = 0; i < hands.size(); ++i)
-      rasterise(placed_[i].list, placed_[i].bins.of_band(band), part, target);
-    colour_band(part, samplers, target, out);
-  }
+      rasterise(placed_[i].list, placed_[i].bins.of_band(band), rows, target);
+    colour_band(rows, samplers, target, out);
+  };
+  crew.run(last - first + 1, draw_band);
 }
 
 }  // namespace handcast::renderer::cpu

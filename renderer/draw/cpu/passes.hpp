@@ -9,6 +9,7 @@
 
 #include "config/sections/cascade.hpp"
 #include "renderer/correct/deform.hpp"
+#include "renderer/draw/cpu/crew.hpp"
 #include "renderer/draw/cpu/fill_table.hpp"
 #include "renderer/draw/cpu/frame_buffer.hpp"
 #include "renderer/draw/cpu/nearest_pixel.hpp"
@@ -23,10 +24,10 @@ namespace handcast::renderer::cpu {
 /// Draws in two steps: geometry into a raster target, then colour for the visible pixels.
 class Drawer {
  public:
-  /// Draws `hands` into `region` of `out`. `samplers`: of their pictures. `target` is overwritten,
-  /// a band at a time.
+  /// Draws `hands` into `region` of `out`. `samplers`: of their pictures. `targets`, one
+  /// for each thread of the crew, are overwritten, a band at a time.
   void draw(std::span<const DrawnHand> hands, std::span<const Sampler> samplers, Rect region,
-            RasterTarget& target, FrameBuffer& out);
+            Crew& crew, std::span<RasterTarget> targets, FrameBuffer& out);
 
  private:
   /// A hand in the projector's image.

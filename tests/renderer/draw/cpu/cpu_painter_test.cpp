@@ -9,7 +9,13 @@ static Result<std::unique_ptr<Painter>> open_cpu(int width_px, int height_px) {
   return make_cpu_painter(width_px, height_px);
 }
 
-INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&open_cpu),
-                         [](const auto&) { return "one_core"; });
+static Result<std::unique_ptr<Painter>> open_threads(int width_px, int height_px) {
+  return make_cpu_painter(width_px, height_px, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(cpu, PainterContract, testing::Values(&open_cpu, &open_threads),
+                         [](const auto& each) {
+                           return each.param == &open_cpu ? "one_core" : "three_threads";
+                         });
 
 }  // namespace handcast::renderer::test
