@@ -18,9 +18,7 @@ Result<void> any(const fs::path& /*kept*/) { return {}; }
 class KeptFile : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override {
-    fs::remove_all(folder_);
-  }
+  void TearDown() override { fs::remove_all(folder_); }
   std::string text() const {
     std::ifstream stream(file_);
     return {std::istreambuf_iterator<char>(stream), {}};
