@@ -102,7 +102,8 @@ TEST(Ledger, TheSlowestFramesAreKeptWithTheirCausesAfterTheFirstSecond) {
 TEST(FrameDelay, LargeCountsDoNotChangeTheOthers) {
   const msg::FrameDelay delay{70'000, 300, 256};
   EXPECT_EQ(msg::frame_delay_in(msg::detail_of(delay)), (msg::FrameDelay{65'535, 255, 255}));
-  EXPECT_EQ(msg::frame_delay_in(msg::detail_of({12, 3, 4})), (msg::FrameDelay{12, 3, 4}));
+  EXPECT_EQ(msg::frame_delay_in(msg::detail_of(msg::FrameDelay{12, 3, 4})),
+            (msg::FrameDelay{12, 3, 4}));
 }
 
 TEST(Ledger, LostImagesAreCountedByReason) {
