@@ -19,9 +19,11 @@ constexpr Board kCharucoBoard{BoardKind::charuco, 11, 8, 20};
 constexpr Board kSquares{BoardKind::checkerboard, 10, 7, 20};
 constexpr Board kDiscs{BoardKind::circles, 9, 6, 20};
 
-/// The reference rig's with half as many pixels each way, because dozens of boards are searched.
-CameraModel small_camera() {
+/// The reference rig's. For boards without markers, of which dozens are searched, it has half as
+/// many pixels each way.
+CameraModel camera_for(const Board& board) {
   auto camera = reference_rig().camera;
+  if (board.kind == BoardKind::charuco) return camera;
   for (double* each : {&camera.fx_px, &camera.fy_px, &camera.cx_px, &camera.cy_px}) *each /= 2;
   camera.width_px /= 2;
   camera.height_px /= 2;
@@ -29,7 +31,7 @@ CameraModel small_camera() {
 }
 
 GreyPicture picture_of(const Board& board) {
-  return photograph(board, {.camera = small_camera(),
+  return photograph(board, {.camera = camera_for(board),
                             .camera_from_board = held(board, {0.01, -0.01, 0.55}, {0.2, -0.1})});
 }
 

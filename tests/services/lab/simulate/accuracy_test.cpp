@@ -10,13 +10,13 @@
 namespace handcast::simulate {
 namespace {
 
-/// 0.8 s of a rig, which runs once for all tests of this program.
+/// 1.2 s of a rig, which runs once for all tests of this program.
 const nlohmann::json& kept_run(const std::string& rig, const std::string& motion,
                                const std::vector<std::string>& settings = {}) {
   static std::map<std::tuple<std::string, std::string, std::vector<std::string>>, nlohmann::json>
       runs;
   auto& run = runs[{rig, motion, settings}];
-  if (run.is_null()) run = run_rig(rig, motion, 0.8, settings, 24, kWarmUp_s);
+  if (run.is_null()) run = run_rig(rig, motion, 1.2, settings);
   return run;
 }
 
