@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::int64_t kRun_ns = 1'000'000'000;
 constexpr double kBusy = 0.8;  ///< share of a period; a loop without sleep would be throttled
+constexpr std::uint64_t kOften = 10;  ///< interrupts in a second that are worth moving
 constexpr double kMuch = 0.2;  ///< a pause of this share of a period makes frames late
 
 std::string all_of(const char* file) {
@@ -111,7 +112,7 @@ std::string remedy_of(const Pauses& pauses) {
                                      : "set projector.process.priority = 50");
   std::vector<std::string> devices;
   for (const auto& [key, line] : pauses.interrupts.lines)
-    if (is_number(key)) devices.push_back(key);
+    if (is_number(key) && line.count >= kOften) devices.push_back(key);
   if (!devices.empty())
     steps.push_back(
         fmt::format("move the interrupts {} to another core: `echo CORE | sudo tee "
