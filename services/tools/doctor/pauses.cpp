@@ -23,7 +23,7 @@ namespace {
 constexpr std::int64_t kRun_ns = 1'000'000'000;
 constexpr double kBusy = 0.8;  ///< share of a period; a loop without sleep would be throttled
 constexpr std::uint64_t kOften = 10;  ///< interrupts in a second that are worth moving
-constexpr double kMuch = 0.2;  ///< a pause of this share of a period makes frames late
+constexpr double kMuch = 0.2;         ///< a pause of this share of a period makes frames late
 
 std::string all_of(const char* file) {
   std::ifstream stream(file);
