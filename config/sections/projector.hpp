@@ -109,9 +109,9 @@ void describe(Visitor& visitor, Projector& projector) {
                 "The output device; `handcast-projector --backends` lists them.");
   visitor.field("painter", projector.painter,
                 "What draws the frames. cpu: one core. gl: a GPU, by OpenGL 4.5 and EGL, without a "
-                "window; cpu, if it cannot be opened or is lost. auto: both are measured for a "
-                "second at each start of the projector, and the faster one draws. The simulator "
-                "always draws with cpu.");
+                "window; cpu, if it cannot be opened or is lost. auto: both are measured at "
+                "each start of the projector, for at most 0.3 s, and the faster one draws. The "
+                "simulator always draws with cpu.");
   visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"),
                 "Frames per second requested from the projector.");
   visitor.field("latency_ms", projector.latency_ms, between(0, 200, "ms"),

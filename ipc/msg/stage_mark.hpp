@@ -54,7 +54,7 @@ inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::co
 struct StageMark {
   Stage stage = Stage::frame;  ///< what was done
   /// By stage: camera_frame.hpp, tracker_faults.hpp (sample), detector_note.hpp (detect),
-  /// drift_note.hpp (watch), rung.hpp, light_source.hpp; else 0.
+  /// drift_note.hpp (watch), rung.hpp (correct), frame_delay.hpp (frame), light_source.hpp; else 0.
   std::uint32_t detail = 0;
   /// Begin and end of the stage, CLOCK_MONOTONIC.
   /// @{

@@ -81,6 +81,10 @@ class Reader {
   /// messages change too fast), bad_data, unavailable (no memory for a copy).
   Result<Sample<T>> at(std::int64_t origin_ns) { return sample(ring_->at(origin_ns)); }
 
+  /// Waits until next() or latest() may have a message; false if there is none at the deadline. A
+  /// loop that runs for every frame asks first: unlike the error of next(), this allocates nothing.
+  bool await(Deadline deadline) { return ring_->await(deadline); }
+
   /// With Wait::eventfd, a descriptor that is readable when there may be a new message; otherwise
   /// -1. Add it to an epoll set; when it is readable, call next(Deadline::now()) until it times
   /// out. next() and latest() make it unreadable again when they find no message. Owned by this

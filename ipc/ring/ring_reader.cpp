@@ -115,6 +115,17 @@ Result<Held> RingReader::at(std::int64_t origin_ns) {
                                       : "its messages change faster than they can be read");
 }
 
+bool RingReader::await(Deadline deadline) {
+  const auto has_news = [this] { return attachment_->core().something_new(); };
+  while (!has_news()) {
+    if (deadline.passed()) return false;
+    // The descriptor is cleared before the last look, as in look().
+    if (bridge_) bridge_->clear();
+    if (!has_news()) wait(deadline);
+  }
+  return true;
+}
+
 template <class Verb>
 Result<Held> RingReader::take_until(Deadline deadline, const Verb& verb) {
   for (Held held;;) {

@@ -102,6 +102,7 @@ class RingReader {
   Result<Held> next(Deadline deadline);
   Result<Held> latest(Deadline deadline);
   Result<Held> at(std::int64_t origin_ns);
+  bool await(Deadline deadline);
 
   int event_fd() const { return bridge_ ? bridge_->fd() : -1; }
 

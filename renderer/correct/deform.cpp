@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 
 #include "renderer/base/clones.hpp"
@@ -16,7 +17,7 @@ constexpr float kSpot_px = 0.5f;    ///< control points closer to their mean tha
 constexpr float kStandIn_px = 1000;
 constexpr float kSpread_px2 = 1e-6f;  ///< keeps the division by the control points' spread finite
 
-glm::vec2 mean(const std::vector<glm::vec2>& points) {
+glm::vec2 mean(std::span<const glm::vec2> points) {
   glm::vec2 sum{0};
   for (const glm::vec2& point : points) sum += point;
   return sum / static_cast<float>(points.size());
@@ -93,17 +94,21 @@ void move_chunk_any(const glm::vec2* p, const glm::vec2* q, int controls, float 
 
 MovingLeastSquares::MovingLeastSquares(std::span<const glm::vec2> p, std::span<const glm::vec2> q,
                                        float alpha)
-    : p_(p.begin(), p.end()), q_(q.begin(), q.end()), alpha_(alpha) {
-  q_.resize(p_.size());
-  if (p_.empty()) return;
-  const glm::vec2 p_mean = mean(p_), q_mean = mean(q_);
-  const bool on_one_spot = std::all_of(p_.begin(), p_.end(), [&](glm::vec2 point) {
-    return glm::distance(point, p_mean) < kSpot_px;
-  });
+    : count_(p.size()), alpha_(alpha) {
+  if (count_ > kMost || q.size() != count_) std::abort();
+  std::ranges::copy(p, p_.begin());
+  std::ranges::copy(q, q_.begin());
+  if (count_ == 0) return;
+  const glm::vec2 p_mean = mean(p), q_mean = mean(q);
+  const bool on_one_spot = std::ranges::all_of(
+      p, [&](glm::vec2 point) { return glm::distance(point, p_mean) < kSpot_px; });
   if (!on_one_spot) return;
   // Coinciding points do not determine rotation and scale. Two points that keep both replace them.
-  p_ = {p_mean - glm::vec2(kStandIn_px, 0), p_mean + glm::vec2(kStandIn_px, 0)};
-  q_ = {q_mean - glm::vec2(kStandIn_px, 0), q_mean + glm::vec2(kStandIn_px, 0)};
+  count_ = 2;
+  p_[0] = p_mean - glm::vec2(kStandIn_px, 0);
+  p_[1] = p_mean + glm::vec2(kStandIn_px, 0);
+  q_[0] = q_mean - glm::vec2(kStandIn_px, 0);
+  q_[1] = q_mean + glm::vec2(kStandIn_px, 0);
 }
 
 glm::vec2 MovingLeastSquares::operator()(glm::vec2 v) const {
@@ -112,7 +117,7 @@ glm::vec2 MovingLeastSquares::operator()(glm::vec2 v) const {
 }
 
 void MovingLeastSquares::apply(std::span<glm::vec2> points) const {
-  if (p_.empty()) return;
+  if (count_ == 0) return;
   const auto move = alpha_ == 0.5f   ? move_chunk_half
                     : alpha_ == 1.0f ? move_chunk_one
                                      : move_chunk_any;
@@ -124,7 +129,7 @@ void MovingLeastSquares::apply(std::span<glm::vec2> points) const {
       x[k] = v.x;
       y[k] = v.y;
     }
-    move(p_.data(), q_.data(), static_cast<int>(p_.size()), alpha_, x, y);
+    move(p_.data(), q_.data(), static_cast<int>(count_), alpha_, x, y);
     for (std::size_t k = 0; k < chunk.size(); ++k) chunk[k] = {x[k], y[k]};
   }
 }

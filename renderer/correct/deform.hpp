@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
+#include <cstddef>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -20,8 +22,10 @@ namespace handcast::renderer {
 /// paper, "Moving Least Squares Deformation".
 class MovingLeastSquares {
  public:
-  /// Copies the control points, of the same number. Without any, nothing is moved; if all `p` are
-  /// within half a pixel of their mean, everything is translated.
+  /// The largest number of control points: the landmarks of two hands.
+  static constexpr std::size_t kMost = 2 * kLandmarks;
+  /// Copies the control points, of the same number, at most kMost. Without any, nothing is moved;
+  /// if all `p` are within half a pixel of their mean, everything is translated.
   MovingLeastSquares(std::span<const glm::vec2> p, std::span<const glm::vec2> q, float alpha);
   /// The image of `v`.
   glm::vec2 operator()(glm::vec2 v) const;
@@ -29,7 +33,8 @@ class MovingLeastSquares {
   void apply(std::span<glm::vec2> points) const;
 
  private:
-  std::vector<glm::vec2> p_, q_;
+  std::array<glm::vec2, kMost> p_, q_;
+  std::size_t count_;
   float alpha_;
 };
 
@@ -49,10 +54,10 @@ struct WarpGrid {
   glm::vec2 operator()(glm::vec2 v) const;
 };
 
-/// The grid of the paper's correction: grid_columns x grid_rows nodes over `area`, moved by
-/// `field`.
-WarpGrid make_warp_grid(const config::Correct& settings, Rect area,
-                        const MovingLeastSquares& field);
+/// Replaces `grid` by that of the paper's correction: grid_columns x grid_rows nodes over `area`,
+/// moved by `field`. Its memory is reused.
+void make_warp_grid(const config::Correct& settings, Rect area, const MovingLeastSquares& field,
+                    WarpGrid& grid);
 
 /// The default correction: moves the vertices of one drawn hand in place, by one similarity per
 /// bone from `p` (P) to `q` (Q̂), blended with the skin weights. A bone seen shorter than

@@ -34,6 +34,10 @@ FoldoverRepair::FoldoverRepair(const HandMesh& mesh) : triangles_(mesh.triangles
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (const std::uint16_t v : triangles_[t])
       around_[place_of_[v]].push_back(static_cast<std::uint32_t>(t));
+  clusters_.resize(at_place_.size());
+  std::size_t most_around = 0;
+  for (const auto& around : around_) most_around = std::max(most_around, around.size());
+  waiting_.resize(triangles_.size() + 3 * kMostMoves * most_around);  // nothing grows in a frame
 }
 
 bool FoldoverRepair::turned_over(std::size_t triangle, std::span<const glm::vec2> before,
@@ -44,7 +48,6 @@ bool FoldoverRepair::turned_over(std::size_t triangle, std::span<const glm::vec2
 
 /// Makes each place a cluster.
 void FoldoverRepair::start(std::span<const glm::vec2> before, std::span<const glm::vec2> after) {
-  clusters_.resize(at_place_.size());
   for (std::size_t place = 0; place < at_place_.size(); ++place) {
     const std::uint16_t v = at_place_[place].front();
     clusters_[place] = {static_cast<std::uint16_t>(place), after[v] - before[v], 1};

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "renderer/base/similarity.hpp"
 #include "renderer/correct/deform.hpp"
@@ -81,8 +80,9 @@ JointMoves joint_moves(const config::Correct& settings, Landmarks2d p, Landmarks
 
 /// Moves every vertex by its bones, weighted by their trust. If the weights sum to less than 1, the
 /// result is that share of a position, and the rest must be added.
-void move_by_bones(const HandMesh& hand, const JointMoves& moves, std::span<glm::vec2> vertices) {
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
+void move_by_bones(const HandMesh& hand, const JointMoves& moves, std::span<glm::vec2> vertices,
+                   std::size_t first, std::size_t end) {
+  for (std::size_t v = first; v < end; ++v) {
     const auto& joints = hand.joints[v];
     const auto& weights = hand.weights[v];
     const Four sum = weights[0] * moves.move[joints[0]] + weights[1] * moves.move[joints[1]] +
@@ -92,27 +92,29 @@ void move_by_bones(const HandMesh& hand, const JointMoves& moves, std::span<glm:
   }
 }
 
-/// The vertices whose bones have a total weight below 1, and the share that remains.
+constexpr std::size_t kBatch = 256;  ///< vertices that are corrected at once
+
+/// The vertices of a batch whose bones have a total weight below 1, and the share that remains.
 struct LeftOver {
-  std::vector<std::uint16_t> vertex;
-  std::vector<float> share;
-  std::vector<glm::vec2> place;
+  std::size_t count = 0;
+  std::array<std::uint16_t, kBatch> vertex;
+  std::array<float, kBatch> share;
+  std::array<glm::vec2, kBatch> place;
 };
 
 void find_left_over(const HandMesh& hand, const JointMoves& moves,
-                    std::span<const glm::vec2> vertices, LeftOver& left) {
+                    std::span<const glm::vec2> vertices, std::size_t first, std::size_t end,
+                    LeftOver& left) {
   constexpr float kNothing = 1e-3f;
-  left.vertex.clear();
-  left.share.clear();
-  left.place.clear();
+  left.count = 0;
   if (moves.all_trusted) return;
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
+  for (std::size_t v = first; v < end; ++v) {
     float share = 1;
     for (int k = 0; k < 4; ++k) share -= hand.weights[v][k] * moves.trust[hand.joints[v][k]];
     if (share < kNothing) continue;
-    left.vertex.push_back(static_cast<std::uint16_t>(v));
-    left.share.push_back(share);
-    left.place.push_back(vertices[v]);
+    left.vertex[left.count] = static_cast<std::uint16_t>(v);
+    left.share[left.count] = share;
+    left.place[left.count++] = vertices[v];
   }
 }
 
@@ -120,14 +122,17 @@ void find_left_over(const HandMesh& hand, const JointMoves& moves,
 
 void correct_vertices(const config::Correct& settings, const HandMesh& hand, Landmarks2d p,
                       Landmarks2d q, std::span<glm::vec2> vertices) {
-  thread_local LeftOver left;  // its memory is reused
   const JointMoves moves = joint_moves(settings, p, q);
-  find_left_over(hand, moves, vertices, left);
-  move_by_bones(hand, moves, vertices);
-  if (left.vertex.empty()) return;
-  MovingLeastSquares(p, q, static_cast<float>(settings.alpha)).apply(left.place);
-  for (std::size_t k = 0; k < left.vertex.size(); ++k)
-    vertices[left.vertex[k]] += left.share[k] * left.place[k];
+  const MovingLeastSquares field(p, q, static_cast<float>(settings.alpha));
+  LeftOver left;
+  for (std::size_t first = 0; first < vertices.size(); first += kBatch) {
+    const std::size_t end = std::min(first + kBatch, vertices.size());
+    find_left_over(hand, moves, vertices, first, end, left);
+    move_by_bones(hand, moves, vertices, first, end);
+    field.apply(std::span(left.place).first(left.count));
+    for (std::size_t k = 0; k < left.count; ++k)
+      vertices[left.vertex[k]] += left.share[k] * left.place[k];
+  }
 }
 
 }  // namespace handcast::renderer

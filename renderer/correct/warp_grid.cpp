@@ -31,15 +31,17 @@ glm::vec2 WarpGrid::operator()(glm::vec2 v) const {
   return top[0] + y * (bottom[0] - top[0]) + x * (bottom[1] - bottom[0]);
 }
 
-WarpGrid make_warp_grid(const config::Correct& settings, Rect area,
-                        const MovingLeastSquares& field) {
-  WarpGrid grid{settings.grid_columns, settings.grid_rows, area, {}};
+void make_warp_grid(const config::Correct& settings, Rect area, const MovingLeastSquares& field,
+                    WarpGrid& grid) {
+  grid.columns = settings.grid_columns;
+  grid.rows = settings.grid_rows;
+  grid.area = area;
+  grid.nodes.clear();
   grid.nodes.reserve(static_cast<std::size_t>(grid.columns) * grid.rows);
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column)
       grid.nodes.push_back(grid.source(column, row));
   field.apply(grid.nodes);
-  return grid;
 }
 
 }  // namespace handcast::renderer

@@ -7,7 +7,6 @@ namespace handcast::renderer {
 namespace {
 
 constexpr std::int64_t kKept_ns = 150'000'000;
-constexpr std::size_t kMostEntries = 512;
 
 }  // namespace
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <deque>
 #include <optional>
 
+#include "renderer/base/recent.hpp"
 #include "renderer/filter/landmark_filter.hpp"
 
 namespace handcast::renderer {
@@ -23,7 +23,9 @@ class TrackerMemory {
     std::int64_t target_ns;
     LandmarkPoints tracker;
   };
-  std::deque<Entry> entries_;  ///< by target time
+  static constexpr std::size_t kMostEntries = 512;
+
+  Recent<Entry> entries_{kMostEntries + 1};  ///< by target time
 };
 
 /// P at the time of a detection: as it was predicted then if `memory` is given (not nullptr) and

@@ -12,7 +12,6 @@ namespace {
 
 /// Least time between frames that are kept: about three per tracker sample.
 constexpr std::int64_t kApart_ns = 3'000'000;
-constexpr std::size_t kMostWaiting = 32;
 /// Time constants of the means of errors that grow, and that fall.
 constexpr float kRise_s = 0.1f, kFall_s = 0.3f;
 constexpr float kRegistration_s = 1.0f;

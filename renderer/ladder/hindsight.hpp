@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <deque>
 #include <optional>
 
+#include "renderer/base/recent.hpp"
 #include "renderer/predict/hand_track.hpp"
 
 namespace handcast::renderer {
@@ -54,7 +54,9 @@ class Hindsight {
   void compare(const Frame& frame, const LandmarkPoints& at_camera,
                const LandmarkPoints& at_target);
 
-  std::deque<Frame> waiting_;  ///< by target time
+  static constexpr std::size_t kMostWaiting = 32;
+
+  Recent<Frame> waiting_{kMostWaiting};  ///< by target time
   std::int64_t compared_ns_ = 0;
   /// Errors of registered frames, measured and estimated: means over about a second.
   struct RegistrationErrors {

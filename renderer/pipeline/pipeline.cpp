@@ -51,6 +51,12 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(
                                                 std::move(*right), std::move(painter)));
 }
 
+Pipeline::Passed::Passed() {
+  const auto reserve = [](std::size_t most, auto&... all) { (all.reserve(most), ...); };
+  reserve(msg::kMaxHands, hands, sought, moved, late, drawn, described);
+  reserve(MovingLeastSquares::kMost, grid_from_px, grid_to_px);
+}
+
 Pipeline::Pipeline(const config::Cascade& settings, const config::Content& content,
                    const calib::Calibration& calibration, HandPipeline left, HandPipeline right,
                    std::unique_ptr<Painter> painter)
@@ -167,7 +173,9 @@ void Pipeline::predict(std::int64_t now_ns, std::int64_t target_ns) {
 
 /// Finds the masks of the hands in an image and registers the hands in it.
 void Pipeline::see(const TimedImage& camera) {
-  auto& [hands, sought, moved, late, grid, drawn, described] = passed_;
+  auto& hands = passed_.hands;
+  auto& sought = passed_.sought;
+  auto& late = passed_.late;
   sought.clear();
   for (const auto& [hand, frame] : hands) sought.push_back(hand->sought(frame, camera.origin_ns));
   mask_.find(camera, sought);
@@ -189,7 +197,7 @@ Rect Pipeline::advance_masks() {
 /// Moves the projected vertices, and makes the grid if the drawing will be warped. Returns the
 /// number of triangles that are turned over.
 int Pipeline::correct(config::CorrectMethod method) {
-  passed_.grid.reset();
+  passed_.is_warped = false;
   if (method == config::CorrectMethod::grid) return correct_by_grid();
   int foldovers = 0;
   if (method == config::CorrectMethod::vertices)
@@ -218,18 +226,20 @@ int Pipeline::correct_by_grid() {
   if (static_cast<int>(hands.size()) > settings_.correct.grid_hands ||
       std::ranges::none_of(hands, has_landmarks))
     return 0;
-  std::vector<glm::vec2> p, q;
+  auto &p = passed_.grid_from_px, &q = passed_.grid_to_px;
+  p.clear();
+  q.clear();
   for (const auto& [hand, frame] : hands)
     for (const int i : control_points(settings_.correct.grid_points)) {
       p.push_back(frame.from_px[i]);
       q.push_back(frame.to_px[i]);
     }
-  const auto& grid = passed_.grid =
-      make_warp_grid(settings_.correct, screen_,
-                     MovingLeastSquares(p, q, static_cast<float>(settings_.correct.alpha)));
+  const auto alpha = static_cast<float>(settings_.correct.alpha);
+  make_warp_grid(settings_.correct, screen_, MovingLeastSquares(p, q, alpha), passed_.grid);
+  passed_.is_warped = true;
   int foldovers = 0;
   for (auto& [hand, frame] : hands) {
-    for (glm::vec2& vertex : frame.skinned->projected_px) vertex = (*grid)(vertex);
+    for (glm::vec2& vertex : frame.skinned->projected_px) vertex = passed_.grid(vertex);
     foldovers += hand->foldovers(frame);
   }
   return foldovers;
@@ -258,16 +268,17 @@ Rect Pipeline::projected_bounds() const {
 }
 
 FrameDrawing Pipeline::drawing_of(const Placed& placed) {
-  auto& [hands, sought, moved, late, grid, drawn, described] = passed_;
+  auto& drawn = passed_.drawn;
+  const bool is_warped = passed_.is_warped;
   drawn.clear();
   Rect source;
-  for (const auto& [hand, frame] : hands) {
+  for (const auto& [hand, frame] : passed_.hands) {
     if (frame.presence <= 0) continue;
     const Skinned& skinned = *frame.skinned;
-    drawn.push_back(hand->drawn(skinned, grid ? skinned.seen_px : skinned.projected_px));
-    if (grid) source = source.joined(hand->bounds(skinned.seen_px));
+    drawn.push_back(hand->drawn(skinned, is_warped ? skinned.seen_px : skinned.projected_px));
+    if (is_warped) source = source.joined(hand->bounds(skinned.seen_px));
   }
-  return {drawn, placed.region, on_screen(source), grid ? &*grid : nullptr,
+  return {drawn, placed.region, on_screen(source), is_warped ? &passed_.grid : nullptr,
           placed.is_masked ? mask_.in_projector() : GreyView{}};
 }
 

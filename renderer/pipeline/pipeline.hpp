@@ -130,11 +130,15 @@ class Pipeline {
   };
   /// What the steps pass on in one frame. A member so that its memory is reused.
   struct Passed {
+    Passed();
+
     std::vector<HandInFrame> hands;
     std::vector<HandMask::Sought> sought;
     std::vector<HandMask::Moved> moved;
     std::vector<LateRegistration::Hand> late;
-    std::optional<WarpGrid> grid;
+    WarpGrid grid;
+    bool is_warped = false;                           ///< by the grid
+    std::vector<glm::vec2> grid_from_px, grid_to_px;  ///< control points of the grid
     std::vector<DrawnHand> drawn;
     std::vector<FrameHand> described;
   };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <tuple>
 #include <vector>
 
 #include "ipc/base/clock.hpp"
@@ -11,6 +12,8 @@ namespace handcast::renderer {
 /// One thread.
 class StageClock {
  public:
+  StageClock() { marks_.reserve(std::tuple_size_v<decltype(msg::StageMarks::marks)>); }
+
   /// Begins a frame and drops the marks of the last one.
   void start() {
     marks_.clear();

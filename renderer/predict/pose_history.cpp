@@ -99,7 +99,8 @@ PoseHistory::Pushed PoseHistory::push(std::int64_t origin_ns, const msg::HandPos
 bool PoseHistory::breaks(const Sample& sample) {
   if (!continuity_.broken(earlier_than(samples_.back(), kShortestBase_ns), samples_.back(), sample))
     return false;
-  samples_.assign(1, sample);
+  samples_.clear();
+  samples_.push_back(sample);
   begins_ns_ = sample.origin_ns;
   since_jump_ = 1;
   judge_stillness();

@@ -2,13 +2,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <optional>
 
 #include "config/sections/cascade.hpp"
+#include "renderer/base/recent.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "renderer/predict/continuity.hpp"
 
@@ -70,6 +70,7 @@ class PoseHistory {
     glm::quat mean_turn{1, 0, 0, 0};
   };
   static constexpr int kSettled = 3;
+  static constexpr std::size_t kExpected = 64;  ///< samples of 250 ms at 250 Hz
 
   bool breaks(const Sample& sample);
   Stillness stillness(int joint) const;
@@ -82,7 +83,7 @@ class PoseHistory {
 
   config::Predict settings_;
   std::int64_t span_ns_;
-  std::deque<Sample> samples_;
+  Recent<Sample> samples_{kExpected};              ///< by time
   std::array<Stillness, msg::kJoints> stillness_;  ///< of samples_
   Continuity continuity_;
   std::int64_t begins_ns_ = std::numeric_limits<std::int64_t>::min();

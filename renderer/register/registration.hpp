@@ -88,8 +88,8 @@ class Registration {
 
   float limit_px_;
   int count_ = 0;
-  std::array<Point, Contour::kMostPoints> points_;
-  std::array<float, Contour::kMostPoints> sorted_;
+  std::array<Point, Contour::kMostPoints> points_{};
+  std::array<float, Contour::kMostPoints> sorted_{};
   std::array<Finger, kFingers> fingers_;
   glm::vec2 centre_{0};
   std::array<float, kUnknowns> solution_;

@@ -4,7 +4,8 @@
 namespace handcast::projector {
 
 Result<void> Inputs::take_image(Deadline deadline) {
-  auto newest = frames_.latest(deadline);
+  if (!frames_.await(deadline)) return {};
+  auto newest = frames_.latest(Deadline::now());
   if (!newest && newest.error().code == Errc::timeout) return {};
   if (!newest) return tl::make_unexpected(newest.error());
   auto ours = msg::check_calibration(**newest, calibration_);

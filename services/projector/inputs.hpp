@@ -43,7 +43,7 @@ class Inputs {
   template <class Message, class Pipeline>
   Result<void> push_all(ipc::Reader<Message>& reader, Pipeline& pipeline) const {
     Result<void> ours;
-    for (;;) {
+    while (reader.await(Deadline::now())) {
       const auto message = reader.next(Deadline::now());
       if (!message && message.error().code == Errc::timeout) return ours;
       if (!message) return tl::make_unexpected(message.error());
@@ -52,6 +52,7 @@ class Inputs {
       else
         pipeline.push(now_ns(), **message);
     }
+    return ours;
   }
   Result<void> take_image(Deadline deadline);
 

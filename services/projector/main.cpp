@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ipc/base/prefault.hpp"
 #include "renderer/draw/choose/open_painter.hpp"
 #include "services/projector/brightness.hpp"
 #include "services/projector/inputs.hpp"
@@ -24,6 +25,7 @@ static void run_projector(service::Context& context) {
       renderer::open_painter(rig.projector.painter, calibration.projector.width_px,
                              calibration.projector.height_px, shares)));
   pipeline->show_surface(true);  // an observer may come at any time
+  prefault_memory();             // before the turn of a standby, which must be short
   context.stand_by();
   if (!projector) projector = must(projector::open_projector(rig, calibration));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "services/projector/delay_meter.hpp"
 #include "services/projector/last_light.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/publish.hpp"
@@ -24,8 +25,10 @@ void show_frames(service::Context& context, Show show) {
     const std::int64_t begin_ns = now_ns();
     const std::int64_t target_ns = horizon.target_ns(begin_ns);
     const auto* picture = show.test_pictures.at(begin_ns, target_ns);
+    const DelayMeter meter;
     auto frame =
         picture ? *picture : show.pipeline.render(begin_ns, target_ns, show.inputs.image());
+    const auto delay = meter.delay();
     const auto times =
         show.projector.present(frame, frame_id, show.brightness.at(now_ns()), Deadline::in(50ms));
     show.pipeline.read_back(frame);
@@ -38,7 +41,7 @@ void show_frames(service::Context& context, Show show) {
     last_light.presented();
     horizon.learn(begin_ns, *times);
     publish_projection(frame, frame_id, *times, show.projections);
-    context.mark({frame_id, frame.made_from.image_ns}, time_sheet(frame.stages, *times),
+    context.mark({frame_id, frame.made_from.image_ns}, TimeSheet(frame.stages, *times, delay),
                  frame.made_from);
   }
 }

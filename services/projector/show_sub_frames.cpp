@@ -4,6 +4,7 @@
 
 #include "calib/sub_frames.hpp"
 #include "renderer/output/packing.hpp"
+#include "services/projector/delay_meter.hpp"
 #include "services/projector/last_light.hpp"
 #include "services/projector/pacing.hpp"
 #include "services/projector/show.hpp"
@@ -70,11 +71,13 @@ class SubFrameLoop {
       context_.tolerate(delivered.error());
     const std::int64_t begin_ns = now_ns();
     const auto* picture = show_.test_pictures.at(begin_ns, drawing.target_ns);
+    const DelayMeter meter;
     const auto frame =
         picture ? *picture
                 : show_.pipeline.render(begin_ns, drawing.target_ns, show_.inputs.image());
+    const auto delay = meter.delay();
     packer_->add(frame.colour, frame.region, drawing.first, drawing.count);
-    messages_.keep(frame, drawing.count);
+    messages_.keep(frame, drawing.count, delay);
     return frame;
   }
 

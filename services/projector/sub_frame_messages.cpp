@@ -8,7 +8,7 @@
 
 namespace handcast::projector {
 
-void SubFrameMessages::keep(const renderer::Frame& frame, int count) {
+void SubFrameMessages::keep(const renderer::Frame& frame, int count, const msg::FrameDelay& delay) {
   if (kept_ == drawings_.size()) drawings_.emplace_back();
   Drawing& drawing = drawings_[kept_++];
   const std::size_t bytes = msg::Projection::bytes(static_cast<std::size_t>(frame.region.width()),
@@ -17,6 +17,7 @@ void SubFrameMessages::keep(const renderer::Frame& frame, int count) {
   auto& message = *new (drawing.message.data()) msg::Projection;
   write_projection(frame, 0, {}, message, bytes - sizeof message);
   drawing.stages.assign(frame.stages.begin(), frame.stages.end());
+  drawing.delay = delay;
   drawing.count = count;
 }
 
@@ -55,7 +56,7 @@ void SubFrameMessages::publish_next() {
     projections_.publish(std::move(slot));
   }
   if (sub_frame.is_first)
-    mark_({id, kept.made_from.image_ns}, time_sheet(drawing.stages, sub_frame.times),
+    mark_({id, kept.made_from.image_ns}, TimeSheet(drawing.stages, sub_frame.times, drawing.delay),
           kept.made_from);
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "ipc/msg/frame_delay.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/writer.hpp"
@@ -28,8 +29,8 @@ class SubFrameMessages {
   SubFrameMessages(ipc::Writer<msg::Projection> projections, Mark mark)
       : projections_(std::move(projections)), mark_(std::move(mark)) {}
 
-  /// Keeps a copy of a drawing of the output frame that is being drawn.
-  void keep(const renderer::Frame& frame, int count);
+  /// Keeps a copy of a drawing of the output frame that is being drawn. `delay`: of its drawing.
+  void keep(const renderer::Frame& frame, int count, const msg::FrameDelay& delay = {});
   /// The last drawing is lit in `count` more sub-frames.
   void extend(int count) { drawings_[kept_ - 1].count += count; }
   /// The output frame was handed over as `times` say; the ids of its sub-frames begin with
@@ -47,6 +48,7 @@ class SubFrameMessages {
   struct Drawing {
     std::vector<std::uint64_t> message;  ///< the bytes of a msg::Projection
     std::vector<msg::StageMark> stages;
+    msg::FrameDelay delay;
     int count = 0;
   };
   /// One message of the output frame that is lit.

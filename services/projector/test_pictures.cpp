@@ -17,6 +17,7 @@ const renderer::Frame* TestPictures::at(std::int64_t time_ns, std::int64_t targe
 
 /// True if there is a picture that was not seen before. One that is only repeated is not copied.
 bool TestPictures::take_newest() {
+  if (!pictures_.await(Deadline::now())) return false;
   const auto newest = pictures_.latest(Deadline::now());
   if (!newest) return false;
   const msg::TestPicture& picture = **newest;

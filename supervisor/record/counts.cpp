@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace handcast::supervisor {
 
@@ -27,6 +28,27 @@ double Histogram::percentile_ns(double share) const {
     if (seen >= wanted) return std::exp2((static_cast<double>(i) + 0.5) / kPerOctave);
   }
   return 0;
+}
+
+void SlowFrames::add(std::int64_t span_ns, const msg::FrameDelay& delay) {
+  if (count() == kKept) {
+    if (span_ns <= least_ns()) return;
+    std::ranges::pop_heap(slowest_, std::greater<>(), &Frame::span_ns);
+    slowest_.pop_back();
+  }
+  slowest_.push_back({span_ns, delay});
+  std::ranges::push_heap(slowest_, std::greater<>(), &Frame::span_ns);
+}
+
+SlowFrames::Causes SlowFrames::causes() const {
+  constexpr std::int64_t kShare = 10;  // off the processor for a tenth of the frame
+  Causes causes;
+  for (const auto& [span_ns, delay] : slowest_) {
+    const bool is_off = std::int64_t{delay.off_cpu_us} * 1000 * kShare >= span_ns;
+    ++(is_off ? (delay.preemptions > 0 ? causes.preempted : causes.interrupted)
+              : (delay.faults > 0 ? causes.faulted : causes.own));
+  }
+  return causes;
 }
 
 }  // namespace handcast::supervisor

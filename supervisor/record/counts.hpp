@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/frame_delay.hpp"
 #include "ipc/msg/light_source.hpp"
 
 namespace handcast::supervisor {
@@ -69,6 +72,35 @@ struct LightCount {
     missed += note.refreshes - 1;
     ++doubled;
   }
+};
+
+/// The slowest frames of the projector in a run, and what made them slow.
+class SlowFrames {
+ public:
+  static constexpr std::size_t kKept = 100;  ///< number of frames that are kept
+
+  /// Adds a frame that took `span_ns`.
+  void add(std::int64_t span_ns, const msg::FrameDelay& delay);
+
+  /// Frames by what made them slow, the first of these that applies.
+  struct Causes {
+    std::size_t preempted = 0;  ///< another thread had the processor for 10 % of the frame or more
+    std::size_t interrupted = 0;  ///< something else had: interrupts, a hypervisor
+    std::size_t faulted = 0;      ///< there were page faults
+    std::size_t own = 0;  ///< none: the work itself took longer, by memory or the processor's clock
+  };
+  Causes causes() const;
+  /// Number of frames, at most kKept.
+  std::size_t count() const { return slowest_.size(); }
+  /// The time of the fastest of them, ns; 0 if there is none.
+  std::int64_t least_ns() const { return slowest_.empty() ? 0 : slowest_.front().span_ns; }
+
+ private:
+  struct Frame {
+    std::int64_t span_ns;
+    msg::FrameDelay delay;
+  };
+  std::vector<Frame> slowest_;  ///< a heap; the fastest of them is its first
 };
 
 }  // namespace handcast::supervisor

@@ -65,7 +65,8 @@ Histogram StageTimes::recent(std::int64_t now_ns) const {
 
 void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::uint64_t missed) {
   if (marks.count == 0) return;
-  frames_[std::string(service)].add(marks.header, missed);
+  auto& frames = frames_[std::string(service)];
+  frames.add(marks.header, missed);
   const auto count = std::min<std::size_t>(marks.count, marks.marks.size());
   for (std::size_t i = 0; i < count; ++i) {
     const auto& mark = marks.marks[i];
@@ -81,6 +82,8 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
     }
     if (mark.stage == msg::Stage::detect)
       detectors_[std::string(service)] = msg::detector_note_in(mark.detail);
+    if (mark.stage == msg::Stage::frame && frames.is_settled())
+      slow_frames_.add(mark.end_ns - mark.begin_ns, msg::frame_delay_in(mark.detail));
     if (mark.stage == msg::Stage::watch) tracker_drift_ = msg::drift_note_in(mark.detail);
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})

@@ -24,6 +24,8 @@ class FrameCount {
   /// read.
   void add(const msg::Header& frame, std::uint64_t missed);
 
+  /// True from a second after the first frame on.
+  bool is_settled() const { return settled_ > 0; }
   /// Number of all frames.
   std::uint64_t total() const { return total_; }
   /// Frames per second over the last two seconds, or since the first frame if that is less.
@@ -80,6 +82,8 @@ class Ledger {
   const std::map<std::string, StageTimes, std::less<>>& stages() const { return stages_; }
   /// Number of drawn hands that got each rung of the ladder, by msg::Rung.
   const std::array<std::uint64_t, msg::kRungs>& rungs() const { return rungs_; }
+  /// The slowest frames of the projector, without the first second.
+  const SlowFrames& slow_frames() const { return slow_frames_; }
   /// The light of the projector.
   const LightCount& light() const { return light_; }
   /// The images that the camera lost.
@@ -97,6 +101,7 @@ class Ledger {
   std::map<std::string, FrameCount, std::less<>> frames_;
   std::map<std::string, StageTimes, std::less<>> stages_;
   std::array<std::uint64_t, msg::kRungs> rungs_{};
+  SlowFrames slow_frames_;
   LightCount light_;
   LossCount lost_images_;
   std::array<std::uint64_t, msg::kTrackerFaults> tracker_faults_{};

@@ -104,6 +104,15 @@ std::optional<LightFigures> figures_of(const LightCount& light) {
                       light.missed, light.doubled};
 }
 
+/// Empty if there was no frame.
+std::optional<SlowFrameFigures> figures_of(const SlowFrames& slow) {
+  if (slow.count() == 0) return std::nullopt;
+  const auto causes = slow.causes();
+  return SlowFrameFigures{slow.count(),     rounded(ns_to_us(slow.least_ns())),
+                          causes.preempted, causes.interrupted,
+                          causes.faulted,   causes.own};
+}
+
 /// Empty if nothing is known.
 std::optional<DriftFigures> figures_of(const msg::DriftNote& drift) {
   if (drift.places == 0) return std::nullopt;
@@ -136,6 +145,7 @@ Figures figures_of(const RigView& rig) {
     if (!spec.stream.empty()) figures.streams[spec.stream] = stream_figures_of(*service, rig);
   }
   figures.light = figures_of(ledger.light());
+  figures.slow_frames = figures_of(ledger.slow_frames());
   for (const auto& [reason, count] : ledger.lost_images().by_reason())
     figures.lost_images[std::string(reason)] = count;
   for (std::size_t k = 0; k < msg::kTrackerFaults; ++k)
@@ -164,7 +174,7 @@ json live_report(const RigView& rig) {
     figures.stages[stage] = figures_of(times.whole_run());
   const auto all = to_json(std::move(figures));
   json report{{"rig", all["rig"]}, {"seconds", all["uptime_s"]}};
-  for (const auto* part : {"light", "lost_images", "tracker_faults", "stage_us"})
+  for (const auto* part : {"light", "slow_frames", "lost_images", "tracker_faults", "stage_us"})
     report[part] = all[part];
   for (const auto& service : rig.services) {
     const auto& spec = service->spec();

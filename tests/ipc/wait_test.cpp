@@ -85,6 +85,40 @@ TEST(Wakeups, OneMessageWakesAllReadersThatSleep) {
   }
 }
 
+TEST(Await, SaysWhetherThereIsAMessageWithoutTakingIt) {
+  for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex, Wait::eventfd}) {
+    const auto segment = make_ring<Note>(4, true);
+    auto writer = must(Writer<Note>::attach(again(segment)));
+    auto reader = must(Reader<Note>::attach(again(segment), wait));
+    for (std::uint64_t round = 1; round < 9; ++round) {
+      EXPECT_FALSE(reader.await(kNow));
+      EXPECT_FALSE(reader.await(Deadline::in(1ms)));
+      writer.publish(note(round));
+      EXPECT_TRUE(reader.await(kNow));
+      EXPECT_TRUE(reader.await(kNow));
+      EXPECT_EQ(must(reader.next(kNow))->value, round);
+    }
+  }
+}
+
+TEST(Await, AMessageEndsTheWait) {
+  for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex, Wait::eventfd}) {
+    const auto segment = make_ring<Note>(64, true);
+    auto reader = must(Reader<Note>::attach(again(segment), wait));
+    std::jthread thread([&] {
+      auto writer = must(Writer<Note>::attach(again(segment)));
+      for (std::uint64_t i = 1; i <= 20; ++i) {
+        std::this_thread::sleep_for(500us);
+        writer.publish(note(i));
+      }
+    });
+    for (std::uint64_t i = 1; i <= 20; ++i) {
+      ASSERT_TRUE(reader.await(Deadline::in(20s)));
+      EXPECT_EQ(must(reader.next(kNow))->value, i);
+    }
+  }
+}
+
 TEST(EventFd, ThereIsNoneForTheOtherWays) {
   const auto segment = make_ring<Note>(4);
   for (const auto wait : {Wait::spin, Wait::predictive, Wait::futex})

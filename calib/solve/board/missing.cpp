@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "calib/solve/board/board_finder.hpp"
@@ -53,9 +55,9 @@ std::optional<Board> charuco_in(GreyView image, const Board& wanted) {
 }
 
 std::optional<Board> unmarked_in(GreyView image, const Board& wanted) {
-  for (const auto kind :
-       {wanted.kind == BoardKind::circles ? BoardKind::circles : BoardKind::checkerboard,
-        BoardKind::checkerboard, BoardKind::circles})
+  std::array kinds{BoardKind::checkerboard, BoardKind::circles};
+  if (wanted.kind == BoardKind::circles) std::swap(kinds[0], kinds[1]);
+  for (const auto kind : kinds)
     for (const Board& board : alternatives(wanted, kind))
       if (BoardFinder(board).find(image)) return board;
   return std::nullopt;

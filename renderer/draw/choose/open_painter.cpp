@@ -2,12 +2,15 @@
 #include "renderer/draw/choose/open_painter.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/statistics.hpp"
 #include "renderer/draw/cpu/cpu_painter.hpp"
 
 #ifdef HANDCAST_WITH_GL
@@ -85,29 +88,56 @@ class Scene {
 };
 
 FrameTime time_of(std::vector<double> frames_ms) {
-  std::sort(frames_ms.begin(), frames_ms.end());
-  const std::size_t last = frames_ms.size() - 1;
-  return {frames_ms[last / 2], frames_ms[last * 99 / 100]};
+  return {median(std::span(frames_ms)), quantile(std::span(frames_ms), 0.99)};
 }
+
+/// One painter of a contest.
+class Contestant {
+ public:
+  Contestant(Painter& painter, const std::function<std::int64_t()>& clock)
+      : painter_(painter), clock_(clock) {}
+
+  /// Paints the frames of a round, until `end_ns` if it has drawn before.
+  void paint_round(const Scene& scene, std::int64_t end_ns) {
+    constexpr int kRound = 4;  // frames, of which the first only warms up
+    round_ms_.clear();
+    for (int i = 0; i < kRound && (frames_ms_.empty() || clock_() < end_ns); ++i) {
+      const std::int64_t begin_ns = clock_();
+      scene.paint(painter_);
+      if (i == 0) continue;
+      round_ms_.push_back(ns_to_ms(clock_() - begin_ns));
+      frames_ms_.push_back(round_ms_.back());
+    }
+  }
+  /// Median of the last round; empty if its end was cut off.
+  std::optional<double> round_ms() const {
+    return round_ms_.empty() ? std::nullopt : std::optional(median(round_ms_));
+  }
+  FrameTime times() const { return time_of(frames_ms_); }
+
+ private:
+  Painter& painter_;
+  const std::function<std::int64_t()>& clock_;
+  std::vector<double> round_ms_, frames_ms_;
+};
 
 }  // namespace
 
 std::pair<FrameTime, FrameTime> contest(Painter& one, Painter& other, int width_px, int height_px,
-                                        double seconds) {
-  constexpr int kRound = 10;  // frames, of which the first only warms up
+                                        const ContestEnd& end,
+                                        const std::function<std::int64_t()>& clock) {
   const Scene scene(width_px, height_px);
-  std::vector<double> one_ms, other_ms;
-  const std::int64_t end_ns = now_ns() + seconds_to_ns(seconds);
+  std::array contestants{Contestant(one, clock), Contestant(other, clock)};
+  std::array<int, 2> clear_wins{};  // in succession
+  const std::int64_t end_ns = clock() + seconds_to_ns(end.limit_s);
   do {
-    for (const auto& [painter, frames_ms] : {std::pair{&one, &one_ms}, {&other, &other_ms}}) {
-      for (int i = 0; i < kRound; ++i) {
-        const std::int64_t begin_ns = now_ns();
-        scene.paint(*painter);
-        if (i > 0) frames_ms->push_back(static_cast<double>(now_ns() - begin_ns) / 1e6);
-      }
-    }
-  } while (now_ns() < end_ns);
-  return {time_of(std::move(one_ms)), time_of(std::move(other_ms))};
+    for (Contestant& each : contestants) each.paint_round(scene, end_ns);
+    const auto one_ms = contestants[0].round_ms(), other_ms = contestants[1].round_ms();
+    if (!one_ms || !other_ms) break;
+    clear_wins[0] = *one_ms * end.clear_factor < *other_ms ? clear_wins[0] + 1 : 0;
+    clear_wins[1] = *other_ms * end.clear_factor < *one_ms ? clear_wins[1] + 1 : 0;
+  } while (std::ranges::max(clear_wins) < end.clear_rounds && clock() < end_ns);
+  return {contestants[0].times(), contestants[1].times()};
 }
 
 namespace {
@@ -139,8 +169,7 @@ Result<OpenedGl> open_gl([[maybe_unused]] int width_px, [[maybe_unused]] int hei
 /// The faster of two painters.
 std::unique_ptr<Painter> faster_of(std::unique_ptr<Painter> cpu, OpenedGl gl, int width_px,
                                    int height_px) {
-  constexpr double kSeconds = 1;
-  const auto [cpu_times, gl_times] = contest(*cpu, *gl.painter, width_px, height_px, kSeconds);
+  const auto [cpu_times, gl_times] = contest(*cpu, *gl.painter, width_px, height_px);
   if (const auto failure = gl.painter->failure()) {
     log::warning("{}; drawing with cpu", failure->what);
     return cpu;

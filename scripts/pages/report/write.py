@@ -8,7 +8,7 @@ from pages.files import write_whole
 from pages.report.accuracy import METRICS, detector_of, replaced_detectors, row_of
 from pages.report.film import make_film
 from pages.report.inputs import gather_metrics, read_inputs
-from pages.report.live import services_of, sheets_of, too_slow
+from pages.report.live import services_of, sheets_of, slowest_of, too_slow
 from pages.report.speed import bins_of, chart_of
 
 DONE, BAD_RESULT = 0, 1
@@ -35,7 +35,7 @@ def page(inputs, film, title):
     return page_of("report.html", title, facts_of(inputs), inputs=inputs, runs=inputs.runs, film=film,
                    metrics=[row_of(metric, inputs.runs) for metric in METRICS], detectors=[detector_of(run) for run in inputs.runs],
                    replaced=replaced_detectors(inputs.runs), bins=bins, chart=chart_of(inputs.runs, bins),
-                   services=services_of(inputs.live), slow=too_slow(inputs.live),
+                   services=services_of(inputs.live), slow=too_slow(inputs.live), slowest=slowest_of(inputs.live),
                    sheets=sheets_of(inputs.live, inputs.runs[2].metrics))
 
 

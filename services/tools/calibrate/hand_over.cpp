@@ -58,9 +58,10 @@ std::string heading_of(const fs::path& rig_file) {
       rig_file.filename().string(), local_time("%Y-%m-%d %H:%M"));
 }
 
-/// Writes settings to the file of measured ones; others that it has stay. Returns a sentence.
+/// Writes settings to the file of measured ones; others that it has stay. `above`: see
+/// write_and_keep(). Returns a sentence.
 Result<std::string> apply_settings(const fs::path& rig_file,
-                                   std::span<const config::MeasuredSetting> settings) {
+                                   std::span<const config::MeasuredSetting> settings, int above) {
   const auto file = config::measured_file_of(rig_file);
   const auto before = config::read_measured(file);
   if (!before) return tl::make_unexpected(before.error());
@@ -80,7 +81,7 @@ Result<std::string> apply_settings(const fs::path& rig_file,
   if (!fs::exists(file, unknown))  // so that undo() has something to put back
     if (auto first = write_whole(file, heading_of(rig_file)); !first)
       return tl::make_unexpected(first.error());
-  return write_and_keep(file, text).map([&](const std::string& written) {
+  return write_and_keep(file, text, above).map([&](const std::string& written) {
     return fmt::format(
         "measured settings, which win over those of {0}, are in {1}; `handcast calibrate {0} "
         "--undo` takes them back",
@@ -92,11 +93,12 @@ Result<std::string> apply_settings(const fs::path& rig_file,
 
 Result<void> hand_over(const Options& options, const config::Rig& rig,
                        const calib::Calibration& running, Session& session) {
-  keep_above({rig.calibration, session.target(), config::measured_file_of(options.rig_file)});
+  const auto file = config::measured_file_of(options.rig_file);
+  const int above = newest_number({rig.calibration, session.target(), file});
   if (session.is_pending()) {
     if (is_true_by_name(rig))
       if (auto kept = keep_truth(options, running); !kept) return kept;
-    const auto finished = session.finish();
+    const auto finished = session.finish(above);
     if (!finished) return tl::make_unexpected(finished.error());
     fmt::print("{}\n", *finished);
   }
@@ -104,9 +106,8 @@ Result<void> hand_over(const Options& options, const config::Rig& rig,
   const auto measured = session.settings();
   settings.insert(settings.end(), measured.begin(), measured.end());
   if (settings.empty()) return {};
-  const auto file = config::measured_file_of(options.rig_file);
   const auto applied = options.apply
-                           ? apply_settings(options.rig_file, settings)
+                           ? apply_settings(options.rig_file, settings, above)
                            : fmt::format("settings, which --apply writes to {}", file.string());
   fmt::print("{}:\n", applied ? *applied : "measured settings, which could not be written");
   for (const auto& [path, value] : settings) fmt::print("  {} = {}\n", path, value);
@@ -117,12 +118,12 @@ Result<void> hand_over(const Options& options, const config::Rig& rig,
 
 Result<void> undo(const Options& options, const config::Rig& rig) {
   const auto measured = config::measured_file_of(fs::absolute(options.rig_file));
-  const auto newest = std::max(newest_number(rig.calibration), newest_number(measured));
+  const auto newest = newest_number({rig.calibration, measured});
   if (newest == 0)
     return fail(Errc::bad_config, fmt::format("nothing is kept of {} that could be taken back",
                                               options.rig_file.string()));
   const auto take = [&](const fs::path& file, const IsUsable& is_usable) -> Result<void> {
-    if (newest_number(file) != newest) return {};
+    if (newest_number({file}) != newest) return {};
     return take_back(file, is_usable).map([](const auto& done) { fmt::print("{}\n", done); });
   };
   auto taken = take(rig.calibration, [](const fs::path& kept) {

@@ -69,20 +69,15 @@ std::vector<fs::path> all_kept(const fs::path& file) {
   return kept;
 }
 
-int& least_number() {
-  static int number = 0;
-  return number;
-}
-
 /// The name that the next version gets.
-fs::path free_name_of(const fs::path& file) {
-  const int number = std::max(newest_number(file), least_number()) + 1;
+fs::path free_name_of(const fs::path& file, int above) {
+  const int number = std::max(newest_number({file}), above) + 1;
   return in_folder(file, fmt::format("{}.{:04}{}", file.stem().string(), number, universal_time()));
 }
 
 /// Copies a file to a free name, which it returns.
-Result<fs::path> keep_old(const fs::path& file) {
-  const auto old = free_name_of(file);
+Result<fs::path> keep_old(const fs::path& file, int above) {
+  const auto old = free_name_of(file, above);
   std::error_code error;
   fs::copy_file(file, old, error);
   if (error && error != std::errc::file_exists) {
@@ -105,25 +100,23 @@ std::string local_time(const char* format) {
   return text_of(format, local);
 }
 
-void keep_above(std::initializer_list<fs::path> files) {
-  least_number() = 0;
-  for (const auto& file : files) least_number() = std::max(least_number(), newest_number(file));
-}
-
-Result<std::string> write_and_keep(const fs::path& file, const std::string& text) {
+Result<std::string> write_and_keep(const fs::path& file, const std::string& text, int above) {
   std::string sentence = file.string();
   std::error_code unknown;
   if (fs::exists(file, unknown)) {
-    const auto old = keep_old(file);
+    const auto old = keep_old(file, above);
     if (!old) return tl::make_unexpected(old.error());
     sentence += fmt::format("; the one before it is kept as {}", old->filename().string());
   }
   return write_whole(file, text).map([&] { return sentence; });
 }
 
-int newest_number(const fs::path& file) {
-  const auto kept = all_kept(file);
-  return kept.empty() ? 0 : number_of(file, kept.front());
+int newest_number(std::initializer_list<fs::path> files) {
+  int newest = 0;
+  for (const auto& file : files)
+    if (const auto kept = all_kept(file); !kept.empty())
+      newest = std::max(newest, number_of(file, kept.front()));
+  return newest;
 }
 
 Result<std::string> take_back(const fs::path& file, const IsUsable& is_usable) {

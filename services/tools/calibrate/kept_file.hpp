@@ -13,18 +13,17 @@ namespace handcast::calibrate {
 /// The time of now where this computer is, as strftime() prints it.
 std::string local_time(const char* format);
 
-/// Until the next call, write_and_keep() uses numbers above those of all kept versions of these
-/// files, so that what one process changes has the same number and is taken back together.
-void keep_above(std::initializer_list<std::filesystem::path> files);
-
 /// Writes the text to the file. If there was one, it is kept as STEM.NUMBER-TIME.EXTENSION,
 /// rig.0003-2026-11-25T001500Z.toml. The number orders the versions; the time (UTC) is for people,
-/// because clocks go back. Returns the names of both: "rig.toml; the one before it is kept as ...".
-/// Errors: unavailable (a file cannot be written).
-Result<std::string> write_and_keep(const std::filesystem::path& file, const std::string& text);
+/// because clocks go back. The number is above those of all versions and above `above`: with the
+/// newest_number() of several files it is the same for all of them, so that what was changed
+/// together is taken back together. Returns the names of both: "rig.toml; the one before it is kept
+/// as ...". Errors: unavailable (a file cannot be written).
+Result<std::string> write_and_keep(const std::filesystem::path& file, const std::string& text,
+                                   int above = 0);
 
-/// The number of the newest kept file; 0 if none is kept.
-int newest_number(const std::filesystem::path& file);
+/// The number of the newest kept version of these files; 0 if none is kept.
+int newest_number(std::initializer_list<std::filesystem::path> files);
 
 /// Says why a kept file cannot be used.
 using IsUsable = std::function<Result<void>(const std::filesystem::path&)>;

@@ -233,12 +233,12 @@ Result<void> Session::write_report() const {
   return write_whole(file("report.json"), print_report(rig_name_, command_, reported));
 }
 
-Result<std::string> Session::finish() const {
+Result<std::string> Session::finish(int above) const {
   // A file that the services would refuse must not take the place of a good one.
   if (const auto usable = calib::load_calibration(file(kDraft)); !usable)
     return tl::make_unexpected(usable.error());
   const auto measured = without_guess(draft_, target_);
-  auto sentence = write_and_keep(target_, calib::print_calibration(measured));
+  auto sentence = write_and_keep(target_, calib::print_calibration(measured), above);
   if (!sentence) return sentence;
   std::error_code absent;
   fs::remove(file(kPending), absent);

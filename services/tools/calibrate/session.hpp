@@ -48,9 +48,9 @@ class Session {
   /// outcome is not good, and all stays as it is), unavailable (a file cannot be written).
   Result<void> keep(Step step, const Outcome& outcome, const calib::Calibration& measured);
   /// Writes the draft to target(), and as opencv.yml to the session's folder for other programs;
-  /// the file before it is kept with the time in its name. Returns a
-  /// sentence about where they are. Errors: unavailable, bad_config.
-  Result<std::string> finish() const;
+  /// the file before it is kept with a number above `above` (write_and_keep()). Returns a sentence
+  /// about where they are. Errors: unavailable, bad_config.
+  Result<std::string> finish(int above = 0) const;
 
  private:
   Session(std::filesystem::path folder, std::filesystem::path target, calib::Calibration draft)

@@ -13,6 +13,7 @@
 #include "services/tools/doctor/display.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
+#include "services/tools/doctor/pauses.hpp"
 #include "services/tools/doctor/real_time.hpp"
 #include "services/tools/doctor/rig_file.hpp"
 #include "services/tools/doctor/start_check.hpp"
@@ -54,8 +55,8 @@ std::vector<Finding> examine(const Options& options) {
   const auto asking = is_up ? Asking::not_now : Asking::now;
   for (auto more :
        {examine_start(options.file, options.settings), rigs_of_others(), examine_machine(*rig),
-        std::vector{examine_real_time(*rig)}, examine_display(*rig), examine_devices(*rig, asking),
-        examine_tracker(*rig, asking), findings_of(std::move(live))})
+        std::vector{examine_real_time(*rig)}, examine_pauses(*rig, asking), examine_display(*rig),
+        examine_devices(*rig, asking), examine_tracker(*rig, asking), findings_of(std::move(live))})
     std::move(more.begin(), more.end(), std::back_inserter(findings));
   return findings;
 }

@@ -43,6 +43,15 @@ void describe(Visitor& visit, LightFigures& light) {
   visit("doubled_frames", light.doubled_frames);
 }
 template <class Visitor>
+void describe(Visitor& visit, SlowFrameFigures& slow) {
+  visit("count", slow.count);
+  visit("least_us", slow.least_us);
+  visit("preempted", slow.preempted);
+  visit("interrupted", slow.interrupted);
+  visit("page_faults", slow.page_faults);
+  visit("own", slow.own);
+}
+template <class Visitor>
 void describe(Visitor& visit, DriftFigures& drift) {
   visit("moved", drift.moved);
   visit("places", drift.places);
@@ -63,6 +72,7 @@ void describe(Visitor& visit, Figures& figures) {
   visit("services", figures.services);
   visit("rings", figures.streams);
   visit("light", figures.light);
+  visit("slow_frames", figures.slow_frames);
   visit("lost_images", figures.lost_images);
   visit("tracker_faults", figures.tracker_faults);
   visit("tracker_drift", figures.tracker_drift);

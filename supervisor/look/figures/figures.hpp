@@ -52,6 +52,15 @@ struct LightFigures {
   std::uint64_t doubled_frames = 0;    ///< frames shown for several refreshes
 };
 
+/// The slowest frames of the projector, by what made them slow (SlowFrames::Causes).
+struct SlowFrameFigures {
+  std::uint64_t count = 0;  ///< at most 100
+  double least_us = 0;      ///< the time of the fastest of them
+  /// @{
+  std::uint64_t preempted = 0, interrupted = 0, page_faults = 0, own = 0;
+  /// @}
+};
+
 /// Where the tracker seems to be, relative to its calibration.
 struct DriftFigures {
   bool moved = false;    ///< it is not where the calibration says
@@ -75,6 +84,7 @@ struct Figures {
   std::map<std::string, ServiceFigures> services;
   std::map<std::string, StreamFigures> streams;
   std::optional<LightFigures> light;                    ///< empty: none came
+  std::optional<SlowFrameFigures> slow_frames;          ///< empty: there was no frame
   std::map<std::string, std::uint64_t> lost_images;     ///< of the camera, by reason
   std::map<std::string, std::uint64_t> tracker_faults;  ///< how often each began, by kind
   std::optional<DriftFigures> tracker_drift;            ///< empty: nothing is known

@@ -69,6 +69,16 @@ std::string text_of_us(double us) {
   return us < kMs ? fmt::format("{:.6g} us", us) : fmt::format("{:.2f} ms", us / kMs);
 }
 
+/// What made the slowest frames slow. "" if there was no frame.
+std::string print_slow_frames(const std::optional<SlowFrameFigures>& slow) {
+  if (!slow) return "";
+  return fmt::format(
+      "\nslowest {} frames, {} or more: {} preempted by other threads, {} interrupted, {} with "
+      "page faults, {} slow by themselves\n",
+      slow->count, text_of_us(slow->least_us), slow->preempted, slow->interrupted,
+      slow->page_faults, slow->own);
+}
+
 /// Names the rings that hold much less than their rate, and what to do. "" if none does.
 std::string print_slow(const Figures& figures) {
   std::vector<std::string> slow;
@@ -135,9 +145,9 @@ std::string print_status(const Figures& figures) {
         "the keeper has died, so a dead supervisor would not be replaced; `handcast up` with the "
         "same arguments starts another keeper\n\n";
   return text + print_services(figures) + print_rings(figures) + print_slow(figures) +
-         print_light(figures) + print_losses(figures.lost_images) +
-         print_faults(figures.tracker_faults) + print_drift(figures.tracker_drift) +
-         print_stages(figures);
+         print_light(figures) + print_slow_frames(figures.slow_frames) +
+         print_losses(figures.lost_images) + print_faults(figures.tracker_faults) +
+         print_drift(figures.tracker_drift) + print_stages(figures);
 }
 
 }  // namespace handcast::supervisor

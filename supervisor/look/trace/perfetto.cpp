@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/msg/frame_delay.hpp"
 #include "ipc/msg/rung.hpp"
 #include "supervisor/look/trace/made_frames.hpp"
 #include "supervisor/look/trace/protobuf.hpp"
@@ -59,9 +60,20 @@ namespace {
 using namespace perfetto;
 
 constexpr std::uint64_t kSequence = 1, kProcessTrack = 1, kAgeTrack = 2, kFirstServiceTrack = 3;
-constexpr std::array<std::string_view, 6> kAnnotations{"frame_id",   "image_id",  "age_ms",
-                                                       "marks_lost", "left_hand", "right_hand"};
-enum Annotation { frame_id, image_id, age_ms, marks_lost, left_hand, right_hand };
+constexpr std::array<std::string_view, 9> kAnnotations{"frame_id",   "image_id",    "age_ms",
+                                                       "marks_lost", "left_hand",   "right_hand",
+                                                       "off_cpu_us", "preemptions", "page_faults"};
+enum Annotation {
+  frame_id,
+  image_id,
+  age_ms,
+  marks_lost,
+  left_hand,
+  right_hand,
+  off_cpu_us,
+  preemptions,
+  page_faults
+};
 
 /// The number of a stage's name in the trace; 0 means no name.
 constexpr std::uint64_t name_id(msg::Stage stage) { return static_cast<std::uint64_t>(stage) + 1; }
@@ -202,6 +214,15 @@ class TraceWriter {
           annotate(side == msg::Side::left ? left_hand : right_hand, [&](Protobuf& value) {
             value.text(event::annotation_text, msg::name_of(*rung));
           });
+    if (slice.mark.stage == msg::Stage::frame) {
+      const auto delay = msg::frame_delay_in(slice.mark.detail);
+      for (const auto& cost :
+           {std::pair(off_cpu_us, delay.off_cpu_us), std::pair(preemptions, delay.preemptions),
+            std::pair(page_faults, delay.faults)})
+        if (cost.second > 0)
+          annotate(cost.first,
+                   [&](Protobuf& value) { value.number(event::annotation_number, cost.second); });
+    }
     if (!is_leading(slice.mark.stage)) return begin;
     const auto& frame = history_.frames[slice.frame];
     for (const auto flow : flows_[slice.frame]) begin.fixed64(event::flow, flow);

@@ -12,7 +12,9 @@ WarpGrid grid_of(const std::vector<glm::vec2>& p, const std::vector<glm::vec2>& 
                  double alpha = 0.5) {
   config::Correct settings;
   settings.alpha = alpha;
-  return make_warp_grid(settings, kScreen, MovingLeastSquares(p, q, static_cast<float>(alpha)));
+  WarpGrid grid;
+  make_warp_grid(settings, kScreen, MovingLeastSquares(p, q, static_cast<float>(alpha)), grid);
+  return grid;
 }
 
 WarpGrid unmoved() { return grid_of({}, {}); }

@@ -27,10 +27,15 @@ inline calib::Calibration rig_above_hand() {
   return calibration;
 }
 
-inline msg::HandPose pose_of(Side side, glm::vec3 moved_m = {}) {
+/// The default hand of a side.
+inline const HandMesh& default_hand(Side side) {
   static const std::array<HandMesh, 2> hands{*load_hand_or_default({}, Side::left),
                                              *load_hand_or_default({}, Side::right)};
-  return pose_of(side, hands[static_cast<std::size_t>(side)].rest, moved_m);
+  return hands[static_cast<std::size_t>(side)];
+}
+
+inline msg::HandPose pose_of(Side side, glm::vec3 moved_m = {}) {
+  return pose_of(side, default_hand(side).rest, moved_m);
 }
 
 inline msg::HandPoses poses_of(std::int64_t origin_ns, const std::vector<msg::HandPose>& hands) {
@@ -66,7 +71,7 @@ inline Image<std::uint8_t> image_of(const calib::Calibration& calibration,
                                     glm::dvec2 offset_px = {}) {
   Image<std::uint8_t> image(calibration.camera.width_px, calibration.camera.height_px, 8);
   for (const auto& pose : poses) {
-    const HandMesh hand = *load_hand_or_default({}, pose.side);
+    const HandMesh& hand = default_hand(pose.side);
     std::vector<glm::vec3> skin_m(hand.vertex_count());
     skin(hand, frames_of(pose), skin_m);
     std::vector<glm::dvec2> px;

@@ -76,6 +76,15 @@ class TheReport(Report):
         write_json(self.folder / "live.json", live)
         self.assertNotIn("too slow", self.page(), "sub-frames")
 
+    def test_says_what_made_the_slowest_frames_slow(self):
+        live = live_run()
+        write_json(self.folder / "live.json", live)
+        self.assertIn("Of the 100 slowest frames of the projector (1.91 ms or more), 61 were preempted by other threads, 20 by interrupts",
+                      self.page())
+        live["slow_frames"] = None
+        write_json(self.folder / "live.json", live)
+        self.assertNotIn("slowest frames", self.page())
+
     def test_says_which_detector_each_run_had_and_why(self):
         detectors = {"baseline": (False, "twin", None), "paper": (True, "twin", "'a.onnx' is missing"), "twin": (True, "handcast", None)}
         for name, (used, backend, why) in detectors.items():

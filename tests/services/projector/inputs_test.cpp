@@ -6,6 +6,9 @@
 #include <unistd.h>
 
 #include "ipc/ring/writer.hpp"
+#include "services/projector/publish.hpp"
+#include "services/projector/test_pictures.hpp"
+#include "tests/frame_costs.hpp"
 
 namespace handcast::projector {
 namespace {
@@ -109,6 +112,41 @@ TEST_F(InputsTest, WhatBelongsToAnotherCalibrationIsLeftOutAndReported) {
   publish_image(6);
   ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
   EXPECT_TRUE(inputs_.image());
+}
+
+/// Replaces the pipeline and keeps nothing.
+struct Sink {
+  void push(std::int64_t, const msg::HandPoses&) { ++messages; }
+  void push(std::int64_t, const msg::Landmarks&) { ++messages; }
+  int messages = 0;
+};
+
+TEST_F(InputsTest, WithAndWithoutNewsAFrameAllocatesAndLocksNothing) {
+  if (!test::are_costs_counted()) GTEST_SKIP() << "sanitizers allocate memory of their own";
+  Ring<msg::TestPicture> picture_ring(msg::TestPicture::bytes(4, 2));
+  TestPictures test_pictures(std::move(picture_ring.reader), 4, 2);
+  Ring<msg::Projection> projections(msg::Projection::bytes(4, 2));
+  const std::array<msg::StageMark, 3> stages{};
+  Sink sink;
+  const auto frame = [&](std::uint64_t id) {
+    EXPECT_TRUE(inputs_.deliver(sink, Deadline::now()));
+    EXPECT_EQ(test_pictures.at(now_ns(), now_ns()), nullptr);
+    renderer::Frame drawn;
+    publish_projection(drawn, id, {}, projections.writer);
+    return std::span<const msg::StageMark>(TimeSheet(stages, {.display_ns = 5})).size();
+  };
+  for (std::uint64_t id = 1; id <= 20; ++id) {
+    if (id % 2 == 0) publish_image(id);
+    if (id % 3 == 0) poses_.publish(id);
+    if (id % 4 == 0) landmarks_.publish(id);
+    const auto before = test::frame_costs();
+    EXPECT_EQ(frame(id), 5u);
+    const auto costs = test::frame_costs() - before;
+    if (id <= 4) continue;  // the buffers of the readers
+    EXPECT_EQ(costs.allocations, 0u) << "frame " << id;
+    EXPECT_EQ(costs.locks, 0u) << "frame " << id;
+  }
+  EXPECT_EQ(sink.messages, 6 + 5);
 }
 
 TEST_F(InputsTest, AnImageOfTheOldCalibrationIsNotKeptWhenTheNewOneComes) {

@@ -75,6 +75,37 @@ TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
   EXPECT_EQ(ledger.light().doubled, 2u);
 }
 
+TEST(Ledger, TheSlowestFramesAreKeptWithTheirCausesAfterTheFirstSecond) {
+  Ledger ledger;
+  const auto add = [&](std::int64_t time_ns, std::int64_t span_us, const msg::FrameDelay& delay) {
+    auto marks = frame_at(time_ns, span_us * 1000);
+    marks.marks[0].stage = msg::Stage::frame;
+    marks.marks[0].detail = msg::detail_of(delay);
+    ledger.add("projector", marks);
+  };
+  add(kOneSecond_ns, 50'000, {40'000, 1, 1});  // the start
+  EXPECT_EQ(ledger.slow_frames().count(), 0u);
+  for (int i = 0; i < 500; ++i) add(3 * kOneSecond_ns + i * kMs, 1000, {});
+  for (int i = 0; i < 40; ++i) add(4 * kOneSecond_ns + i * kMs, 2000 + i, {300, 2, 9});
+  for (int i = 0; i < 30; ++i) add(5 * kOneSecond_ns + i * kMs, 2000, {200, 0, 0});
+  for (int i = 0; i < 20; ++i) add(6 * kOneSecond_ns + i * kMs, 2000, {100, 1, 7});
+  for (int i = 0; i < 10; ++i) add(7 * kOneSecond_ns + i * kMs, 2000, {199, 1, 0});
+  const auto causes = ledger.slow_frames().causes();
+  EXPECT_EQ(ledger.slow_frames().count(), 100u);
+  EXPECT_EQ(ledger.slow_frames().least_ns(), 2'000'000);
+  EXPECT_EQ(causes.preempted, 40u);
+  EXPECT_EQ(causes.interrupted, 30u);
+  EXPECT_EQ(causes.faulted, 20u);
+  EXPECT_EQ(causes.own, 10u);
+}
+
+TEST(FrameDelay, LargeCountsDoNotChangeTheOthers) {
+  const msg::FrameDelay delay{70'000, 300, 256};
+  EXPECT_EQ(msg::frame_delay_in(msg::detail_of(delay)), (msg::FrameDelay{65'535, 255, 255}));
+  EXPECT_EQ(msg::frame_delay_in(msg::detail_of(msg::FrameDelay{12, 3, 4})),
+            (msg::FrameDelay{12, 3, 4}));
+}
+
 TEST(Ledger, LostImagesAreCountedByReason) {
   Ledger ledger;
   auto marks = frame_at(kOneSecond_ns);

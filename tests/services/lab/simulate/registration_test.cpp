@@ -10,11 +10,12 @@ nlohmann::json with(const std::string& method, const std::string& motion, double
   return run_rig("twin", motion, seconds,
                  {"cascade.register.method=" + method, "cascade.ladder.rung=register",
                   "twin.speed=" + std::to_string(speed)},
-                 draw_every);
+                 draw_every, kWarmUp_s);
 }
 
 TEST(LateRegistration, MakesFastHandsAQuarterBetter) {
-  const auto none = with("none", "builtin:wave", 3, 1), mask = with("mask", "builtin:wave", 3, 1);
+  const auto none = with("none", "builtin:wave", 3, 0.6),
+             mask = with("mask", "builtin:wave", 3, 0.6);
   EXPECT_LT(mask["interior_mm"]["mean"].get<double>(),
             0.75 * none["interior_mm"]["mean"].get<double>());
   EXPECT_LT(mask["interior_mm"]["p95"].get<double>(),
@@ -34,7 +35,7 @@ TEST(LateRegistration, LeavesAStillHandStill) {
 }
 
 TEST(LateRegistration, GivesTheSameLightTwice) {
-  auto once = with("mask", "builtin:shake", 1, 0.3), twice = with("mask", "builtin:shake", 1, 0.3);
+  auto once = with("mask", "builtin:shake", 1, 0.1), twice = with("mask", "builtin:shake", 1, 0.1);
   EXPECT_EQ(once["interior_px"], twice["interior_px"]);
   EXPECT_EQ(once["landmark_px"], twice["landmark_px"]);
 }

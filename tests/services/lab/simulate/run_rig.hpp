@@ -72,11 +72,16 @@ inline Options options_of(const std::string& rig, double seconds) {
   return options;
 }
 
+/// Enough for filters and registration; what is learned of a person takes longer.
+inline constexpr double kWarmUp_s = 0.3;
+
 /// Runs config/rigs/RIG.toml on the plain twin and returns its metrics.
 inline nlohmann::json run_rig(const std::string& rig, const std::string& motion, double seconds,
-                              const std::vector<std::string>& settings = {}, int draw_every = 24) {
+                              const std::vector<std::string>& settings = {}, int draw_every = 24,
+                              double warm_up_s = Options().warm_up_s) {
   const test::Scratch folder;
   Options options = options_of(rig, seconds);
+  options.warm_up_s = warm_up_s;
   options.settings.insert(options.settings.end(), settings.begin(), settings.end());
   options.settings.push_back("twin.motion=" + motion);
   options.draw_every = draw_every;

@@ -236,7 +236,7 @@ TEST(Simulation, TheHandsSpeedDoesNotDependOnWhetherItIsLit) {
 // A drawn frame may be shown later than those after it, which are not drawn, and more than once.
 TEST(Simulation, TheTremblingOfTheLandmarksDoesNotDependOnWhenTheirLightIsShown) {
   const auto trembling = [](const std::vector<std::string>& settings) {
-    return figure(run_rig("twin", "builtin:still", 1, settings, 8), "/landmark_jitter_px");
+    return figure(run_rig("twin", "builtin:still", 0.5, settings, 15), "/landmark_jitter_px");
   };
   const auto in_time = trembling({});
   EXPECT_EQ(trembling({"twin.projector.work_ms=1.6"}), in_time);
@@ -303,8 +303,8 @@ TEST(Simulation, LightThatStaysOnBecauseEverySecondFrameIsLateIsWorse) {
   const std::vector<std::string> all{"projector.rate_hz=120"};
   auto late = all;  // half of the frames take longer than the 1.2 ms of projector.software_ms
   late.insert(late.end(), {"twin.projector.work_ms=1.2", "twin.projector.work_spread=0.17"});
-  const auto worse = run_rig("twin", "builtin:shake", 2, late, 1),
-             normal = run_rig("twin", "builtin:shake", 2, all, 1);
+  const auto worse = run_rig("twin", "builtin:shake", 0.6, late, 1),
+             normal = run_rig("twin", "builtin:shake", 0.6, all, 1);
   EXPECT_GT(figure(worse, "/interior_mm/mean"), 1.3 * figure(normal, "/interior_mm/mean"));
 }
 

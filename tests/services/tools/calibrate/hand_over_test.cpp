@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "config/settings/files.hpp"
-#include "services/tools/calibrate/kept_file.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::calibrate {
@@ -22,7 +21,6 @@ const config::MeasuredSetting kLatency{"projector.latency_ms", "10.2"};
 class HandOver : public testing::Test {
  protected:
   HandOver() {
-    keep_above({});
     options_.rig_file = scratch_.path() / "rig.toml";
     options_.folder = scratch_.path() / "rig.calibration";
     write_rig("name = \"mine\"\n");

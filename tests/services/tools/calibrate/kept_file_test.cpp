@@ -18,10 +18,7 @@ Result<void> any(const fs::path& /*kept*/) { return {}; }
 class KeptFile : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override {
-    fs::remove_all(folder_);
-    keep_above({});
-  }
+  void TearDown() override { fs::remove_all(folder_); }
   std::string text() const {
     std::ifstream stream(file_);
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -89,11 +86,11 @@ TEST_F(KeptFile, WhatIsChangedTogetherHasOneNumber) {
   const auto other = folder_ / "rig.toml";
   for (const char* version : {"one", "two", "three"}) ASSERT_TRUE(write_and_keep(other, version));
   ASSERT_TRUE(write_and_keep(file_, "one"));
-  keep_above({file_, other});
-  ASSERT_TRUE(write_and_keep(file_, "two"));
-  ASSERT_TRUE(write_and_keep(other, "four"));
-  EXPECT_EQ(newest_number(file_), 3);
-  EXPECT_EQ(newest_number(other), 3);
+  const int above = newest_number({file_, other});
+  ASSERT_TRUE(write_and_keep(file_, "two", above));
+  ASSERT_TRUE(write_and_keep(other, "four", above));
+  EXPECT_EQ(newest_number({file_}), 3);
+  EXPECT_EQ(newest_number({other}), 3);
 }
 
 TEST_F(KeptFile, OneThatCannotBeUsedAndThatOfAnotherDeviceAreLeftAlone) {

@@ -18,6 +18,7 @@ TEST(Figures, AreTheSameAfterTheWayThroughAnAnswer) {
     "rings": {"camera.frames": {"wanted_hz": 240.0, "held_hz": 239.5, "is_held_to_it": true, "is_settled": true, "count": 5000000000,
               "newest_age_ms": 1.5}},
     "light": {"times_by": "kernel", "missed_refreshes": 7, "doubled_frames": 5},
+    "slow_frames": {"count": 100, "least_us": 1900.5, "preempted": 60, "interrupted": 20, "page_faults": 5, "own": 15},
     "lost_images": {"missing": 3}, "tracker_faults": {"frozen": 2},
     "tracker_drift": {"moved": true, "places": 9, "across_mm": 5.5, "turn_deg": 0.25},
     "stage_us": {"draw": {"p50": 1500.0, "p99": 2500.0, "count": 100}}, "rungs": {"hold": 7}})json");

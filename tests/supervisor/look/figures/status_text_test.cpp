@@ -60,6 +60,21 @@ TEST(StatusText, SaysWhoKnowsWhenLightComes) {
   EXPECT_THAT(text_of(status), Not(HasSubstr("light:")));
 }
 
+TEST(StatusText, SaysWhatMadeTheSlowestFramesSlow) {
+  auto status = status_with({{"slow_frames",
+                              {{"count", 100},
+                               {"least_us", 1900.5},
+                               {"preempted", 60},
+                               {"interrupted", 20},
+                               {"page_faults", 5},
+                               {"own", 15}}}});
+  EXPECT_THAT(text_of(status),
+              HasSubstr("slowest 100 frames, 1.90 ms or more: 60 preempted by other threads, 20 "
+                        "interrupted, 5 with page faults, 15 slow by themselves\n"));
+  status["slow_frames"] = nullptr;
+  EXPECT_THAT(text_of(status), Not(HasSubstr("slowest")));
+}
+
 TEST(StatusText, NamesTheRingsThatDoNotHoldTheirRate) {
   const auto ring = [](const json& wanted, double held) {
     return json{{"wanted_hz", wanted}, {"held_hz", held},    {"is_held_to_it", true},

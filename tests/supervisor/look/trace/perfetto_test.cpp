@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "ipc/msg/frame_delay.hpp"
 #include "ipc/msg/rung.hpp"
 #include "tests/supervisor/look/trace/trace_decoder.hpp"
 #include "tests/supervisor/record/marked_frames.hpp"
@@ -86,6 +87,18 @@ TEST(Perfetto, TheCorrectionTellsTheRungOfEachHand) {
   const auto corrections = trace_of(history).named("correct");
   ASSERT_THAT(corrections, SizeIs(1));
   EXPECT_THAT(corrections[0].texts, ElementsAre(std::pair("right_hand", "similarity")));
+}
+
+TEST(Perfetto, AFrameTellsWhatDelayedIt) {
+  History history(60);
+  auto late = mark(msg::Stage::frame, 0, 3);
+  late.detail = msg::detail_of(msg::FrameDelay{1500, 2, 0});
+  history.add("projector", frame(1, 0, {late}), 0);
+  const auto frames = trace_of(history).named("frame");
+  ASSERT_THAT(frames, SizeIs(1));
+  EXPECT_EQ(frames[0].annotations.at("off_cpu_us"), 1500);
+  EXPECT_EQ(frames[0].annotations.at("preemptions"), 2);
+  EXPECT_FALSE(frames[0].annotations.contains("page_faults"));
 }
 
 TEST(Perfetto, StagesOfAFrameLieInsideItAndItsPresentationBehindIt) {
