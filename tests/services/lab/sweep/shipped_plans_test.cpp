@@ -181,8 +181,10 @@ TEST(ShippedPlans, HardwareDiffersFromTheUnseenInDevicesAlone) {
 TEST(ShippedPlans, NoDeviceOfHardwareIsFasterThanItsRatePermits) {
   const auto plan = load_plan(source_root() / "config/sweeps/hardware.toml");
   ASSERT_TRUE(plan) << plan.error().what;
+  const auto expansion = expand(*plan);
+  ASSERT_TRUE(expansion) << expansion.error().what;
   std::set<std::pair<double, double>> pairs;
-  for (const auto& run : expand(*plan)->runs) {
+  for (const auto& run : expansion->runs) {
     const auto rig = rig_of(*plan, run);
     const auto& camera = rig->camera;
     EXPECT_EQ(plan->variants[run.variant].name.substr(rig->name == "paper" ? 6 : 9),
