@@ -97,7 +97,7 @@ def name_of_projector(projector):
 
 def table_of_pairs(pairs, speed):
     """A row for each method and camera, a column for each projector."""
-    yield f"Mean error of the light in mm, and its equivalent latency in ms (median), at {name_of_speed(speed)}:"
+    yield f"Mean error of the light in mm, and its equivalent latency in ms (median), {name_of_speed(speed)}:"
     yield ""
     yield "| method | camera | " + " | ".join(f"projector {name_of_projector(projector)}" for projector in pairs.projectors) + " |"
     yield "|---|---|" + "---|" * len(pairs.projectors)

@@ -3,16 +3,17 @@
 from dataclasses import dataclass
 
 from pages.chart.chart import Chart
+from pages.chart.chart_b import short_label
 from pages.chart.hardware import pairs_of
 from pages.chart.ladder import name_of_speed
 from pages.chart.picture import Area, Label, Panel, Picture, Range, range_of
 from pages.chart.table import Column, NumberTable
 
-WIDTH_PX, HEIGHT_PX = 1090, 470
+WIDTH_PX, HEIGHT_PX = 1160, 420
 
 READING = (
-    "Each line is a camera, each place on it a projector, from what people own to what the paper has. Further down is more accurate: the "
-    "mean error of the light, where a point without light counts as 20 mm.")
+    "Each line is a camera, from the slowest to the fastest, each place on it a projector: devices that people own, and those of the paper "
+    "(525 and 946 Hz). Further down is more accurate; a point without light counts as 20 mm. The numbers below the lines are those of the fastest camera.")
 CAPTION = (
     "Means over motions that nothing was tuned on, and over seeds, in a careful installation (config/sweeps/hardware.toml). Simulated: "
     "the same on all machines.")
@@ -53,22 +54,36 @@ def name_projectors(panel, projectors):
     for i, projector in enumerate(projectors):
         x_px = panel.place_px((i, panel.y.low))[0]
         panel.picture.text(x_px, panel.area.bottom + 17, f"{projector.rate_hz:g} Hz", "ink", "center", 13)
-        panel.picture.text(x_px, panel.area.bottom + 34, f"{projector.lag_ms:g} ms late", "quiet", "center", 11)
+        panel.picture.text(x_px, panel.area.bottom + 34, f"{projector.lag_ms:g} ms", "quiet", "center", 11)
+
+
+def draw_method(panel, lines, projectors):
+    """The lines of a method: bold those of the slowest and the fastest camera, which have labels, fine those between. Ours has numbers
+    below the fastest one. Returns the labels."""
+    colour, labels = lines[0].method.colour, []
+    for line in lines:
+        points = line.points(projectors)
+        is_outer = line in (lines[0], lines[-1])
+        panel.line(points, colour, 2.5 if is_outer else 1, dots=7 if is_outer else 0)
+        if is_outer:
+            words = f"{short_label(line.method)}, {line.camera_hz} Hz camera\u2002{points[-1][1]:.1f}"
+            labels.append(Label(points[-1], words, colour, line.method.is_ours))
+    for point in lines[-1].points(projectors) if lines[0].method.is_ours else ():
+        x_px, y_px = panel.place_px(point)
+        panel.picture.text(x_px, y_px + 16, f"{point[1]:.1f}", colour, "center", 12, True)
+    return labels
 
 
 def draw_speed(picture, lines, projectors, speed, left_px, y):
-    """The panel of one speed. The slowest and the fastest camera of a method have names; those between them are thin."""
-    panel = Panel(picture, Area(left_px, 84, left_px + 300, HEIGHT_PX - 70), Range(-0.25, len(projectors) - 0.75), y)
+    """The panel of one speed."""
+    panel = Panel(picture, Area(left_px, 70, left_px + 300, HEIGHT_PX - 74), Range(-0.25, len(projectors) - 0.75), y)
     panel.title(name_of_speed(speed), -34, -44)
     panel.name_y("error of the light, mean, mm")
-    panel.name_x("projector", 56)
+    panel.name_x("projector: its rate, and how late its light comes", 58)
     name_projectors(panel, projectors)
     labels = []
     for method in dict.fromkeys(line.method for line in lines):
-        own = [line for line in lines if line.method == method]
-        for line in own:
-            panel.line(line.points(projectors), method.colour, 2, dots=6)
-            labels.append(Label(line.points(projectors)[-1], f"{method.label}, camera {line.camera_hz} Hz", method.colour, method.is_ours))
+        labels += draw_method(panel, [line for line in lines if line.method == method], projectors)
     panel.label_beside(labels)
 
 
@@ -79,7 +94,7 @@ def draw(pairs, colours):
     y = range_of([pair.mean_mm for pair in pairs], False)
     picture = Picture(WIDTH_PX, HEIGHT_PX, colours)
     for i, speed in enumerate(speeds):
-        draw_speed(picture, lines_of(pairs, speed), projectors, speed, 44 + 530 * i, y)
+        draw_speed(picture, lines_of(pairs, speed), projectors, speed, 44 + (WIDTH_PX // 2 + 6) * i, y)
     return picture
 
 

@@ -255,7 +255,7 @@ class Hardware(Drawn):
     def test_has_its_numbers_in_a_file(self):
         self.draw(write_hardware(self.folder))
         self.assertIn('natural speed,handcast,525,"60 Hz, 50 ms",8.5,12,0.1,-0.5,7.5,2', self.text_of("hardware.csv").splitlines())
-        for words in ("natural speed", "3 times as fast", ">946 Hz<", ">50 ms late<"):
+        for words in ("natural speed", "3 times as fast", ">946 Hz<", ">50 ms<"):
             self.assertIn(words, self.text_of("hardware.svg"))
 
 
