@@ -178,6 +178,17 @@ TEST(ShippedPlans, HardwareDiffersFromTheUnseenInDevicesAlone) {
   }
 }
 
+TEST(ShippedPlans, OtherPartsAreComparedWithAPairOfHardware) {
+  std::map<std::string, config::Rig> pairs;
+  for (const auto& [name, rig] : rigs_of("hardware")) pairs.emplace(name, rig);
+  const auto parts = rigs_of("hardware_parts");
+  ASSERT_EQ(parts.size(), 6u);
+  EXPECT_EQ(parts.front().first, "usual");
+  EXPECT_THAT(config::differences(parts.front().second, pairs.at("handcast_120")),
+              testing::UnorderedElementsAre("projector.rate_hz", "projector.latency_ms"));
+  EXPECT_EQ(parts.front().second.projector.rate_hz, 120);
+}
+
 TEST(ShippedPlans, NoDeviceOfHardwareIsFasterThanItsRatePermits) {
   const auto plan = load_plan(source_root() / "config/sweeps/hardware.toml");
   ASSERT_TRUE(plan) << plan.error().what;
@@ -204,8 +215,9 @@ TEST(ShippedPlans, TheUnseenMotionsAreInNoOtherPlan) {
   EXPECT_EQ(values_in("unseen", "mesh"), (std::set<std::string>{"implicit", "webxr"}));
   for (const auto& file : std::filesystem::directory_iterator(source_root() / "config/sweeps")) {
     const auto name = file.path().stem().string();
-    // Nothing is chosen on hardware.toml either.
-    if (file.path().extension() != ".toml" || name == "unseen" || name == "hardware") continue;
+    // Nothing is chosen on hardware.toml and hardware_parts.toml either.
+    if (file.path().extension() != ".toml" || name == "unseen" || name.starts_with("hardware"))
+      continue;
     for (const auto& motion : values_in(name, "motion"))
       EXPECT_FALSE(unseen.contains(motion)) << name << ": " << motion;
   }
