@@ -6,13 +6,14 @@
 
 PART is a table of scripts/results (comparison, unseen, levers, fidelity, causes, motions, fast, two_hands, jitter, first_seconds,
 no_tracker), or a short form of one: summary (of unseen, for README.md), unseen_pairs, comparison_pairs or levers_summary (for
-docs/results.md). It replaces what stands between the lines "<!-- PART: begin -->" and "<!-- PART: end -->". COMMAND is named below the
-table as what has made it, and PEOPLE is the number of seeds that the protocol asks for: a table of fewer says so. scripts/results calls
-this program.
+docs/results.md), or hardware or hardware_parts (for docs/lab/charts.md). It replaces what stands between the lines "<!-- PART: begin -->" and
+"<!-- PART: end -->". COMMAND is named below the table as what has made it, and PEOPLE is the number of seeds that the protocol asks
+for: a table of fewer says so. scripts/results and scripts/charts call this program.
 """
 
 import sys
 
+from tables import hardware
 from tables.document import replaced, wrapped, write_whole
 from tables.rows import PARTS, footer, table, variants_of
 from tables.runs import Runs, die, is_count
@@ -36,8 +37,10 @@ def lines_of(part, path, command, people):
     if part in SUMMARIES:
         short_form, table_part = SUMMARIES[part]
         return list(short_form(runs_of(table_part, path), people))
+    if part in hardware.TABLES:
+        return list(hardware.TABLES[part](path, command))
     if part not in PARTS:
-        die(f"there is no table '{part}'; there are: {', '.join([*PARTS, *SUMMARIES])}")
+        die(f"there is no table '{part}'; there are: {', '.join([*PARTS, *SUMMARIES, *hardware.TABLES])}")
     runs = runs_of(part, path)
     lines, below = list(table(part, runs)), verdict(part, runs)
     return [*lines, *([""] if below else []), *below, "", *footer(runs, command, people)]

@@ -29,9 +29,9 @@ class Verb:
 
 
 CHART_FOOTER = """\
-A: speed against accuracy. B: where methods fail, and the failure atlas. C: error against degrees of freedom and time.
-The charts need the results of these plans in config/sweeps: A and C ladder.toml, and times.toml for frame times; B stress.toml and
-failures.toml. scripts/charts runs all of them."""
+A: speed against accuracy. B: where methods fail, and the failure atlas. C: error against degrees of freedom and time. Hardware: what
+cameras and projectors bring. The charts need the results of these plans in config/sweeps: A and C ladder.toml, and times.toml for frame
+times; B stress.toml and failures.toml; hardware.toml. scripts/charts runs all of them."""
 
 VERBS = {
     "calibration-page": Verb(

@@ -24,11 +24,12 @@ def mean_and_interval(values):
     return statistics.fmean(values), t * statistics.stdev(values) / math.sqrt(len(values))
 
 
-def interval(values):
+def interval(values, digits=2):
     """The mean with its interval; of two values the mean with both, as an interval of two says nothing."""
     if len(values) < 3:
-        return f"{statistics.fmean(values):.2f} ({', '.join(f'{value:.2f}' for value in values)})"
-    return "{:.2f} ± {:.2f}".format(*mean_and_interval(values))
+        return f"{statistics.fmean(values):.{digits}f} ({', '.join(f'{value:.{digits}f}' for value in values)})"
+    mean, half = mean_and_interval(values)
+    return f"{mean:.{digits}f} ± {half:.{digits}f}"
 
 
 def listed(seeds):

@@ -219,6 +219,59 @@ results comparison "$comparison" 5 7 >"$work/results.csv"
 ! table comparison "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a document without the marks is not refused"
 ! table levels "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a table that does not exist is not refused"
 
+# Cameras and projectors: handcast is 4, 3 and 2 mm off with projectors of 60, 120 and 240 Hz, 1 mm more with the camera of 30 Hz, and
+# twice as far at three times the speed; the paper's method is 2 mm worse. Seed 2 is 1 mm worse.
+hardware() {
+  stamp hardware 48
+  echo "index,variant,projector.rate_hz,projector.latency_ms,twin.motion,twin.speed,twin.seed,interior_mm_mean,equivalent_latency_ms,error"
+  local index=0 method camera projector speed seed mm
+  for method in handcast paper; do
+    for camera in 30 525; do
+      for projector in 60,50,4 120,16,3 240,8,2; do
+        for speed in 1 3; do
+          for seed in 1 2; do
+            mm=${projector##*,}
+            [ "$camera" = 525 ] || mm=$((mm + 1))
+            [ "$speed" = 1 ] || mm=$((mm * 2))
+            [ "$method" = handcast ] || mm=$((mm + 2))
+            echo "$((index++)),${method}_$camera,${projector%,*},builtin:coin,$speed,$seed,$((mm + seed)),-1.5,"
+          done
+        done
+      done
+    done
+  done
+}
+document hardware
+hardware >"$work/results.csv"
+"$table" hardware "$work/results.csv" "$work/document.md" "a command"
+says '| method | camera | projector 60 Hz, 50 ms | projector 120 Hz, 16 ms | projector 240 Hz, 8 ms |' || fail "the projectors are wrong"
+says '| handcast | 525 Hz | 5.5 (5.0, 6.0); -1.5 | 4.5 (4.0, 5.0); -1.5 | 3.5 (3.0, 4.0); -1.5 |' || fail "a pair at natural speed is wrong"
+says '| paper | 30 Hz | 13.5 (13.0, 14.0); -1.5 |' || fail "a pair at three times the speed is wrong"
+says '| projector 60 Hz, 50 ms → 120 Hz, 16 ms | 1.00 (1.00, 1.00) | 2.00 (2.00, 2.00) | 1.00 (1.00, 1.00) | 2.00 (2.00, 2.00) |' || fail "a projector's step is wrong"
+says '| camera 30 → 525 Hz | 1.00 (1.00, 1.00) | 2.00 (2.00, 2.00) | 1.00 (1.00, 1.00) | 2.00 (2.00, 2.00) |' || fail "a camera's step is wrong"
+says 'Seeds 1-2; motions coin. Made by `a command`' || fail "seeds, motions or command are missing"
+hardware | sed '5s/,$/,no hand/' >"$work/results.csv"
+! "$table" hardware "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a failed run of a pair is not refused"
+hardware | sed '5d' >"$work/results.csv"
+! "$table" hardware "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a missing run of a pair is not refused"
+
+# Other parts: a weaker lamp costs 2 mm.
+document hardware_parts
+{
+  stamp hardware_parts 12
+  echo "index,variant,twin.motion,twin.speed,twin.seed,interior_mm_mean,error"
+  index=0
+  for variant in usual fast_tracker slow_tracker no_tracker weak_lamp mediapipe; do
+    for seed in 1 2; do
+      echo "$((index++)),$variant,builtin:coin,1,$seed,$((4 + seed + $([ "$variant" = weak_lamp ] && echo 2 || echo 0))),"
+    done
+  done
+} >"$work/results.csv"
+"$table" hardware_parts "$work/results.csv" "$work/document.md"
+says '| a weaker lamp: exposure 8 ms instead of 4 ms | 7.5 (7.0, 8.0) | 2.00 (2.00, 2.00) |' || fail "a part is wrong"
+grep -v usual "$work/results.csv" | sed 's/runs=12/runs=10/' >"$work/less.csv"
+! "$table" hardware_parts "$work/less.csv" "$work/document.md" 2>/dev/null || fail "parts without what they are compared with are not refused"
+
 has_place() { grep -q "<!-- $2: begin -->" "$root/$1" || fail "$1 has no place for $2"; }
 for part in comparison unseen levers fidelity causes motions fast two_hands jitter first_seconds no_tracker; do
   has_place docs/lab/results_tables.md "$part"
@@ -226,3 +279,4 @@ for part in comparison unseen levers fidelity causes motions fast two_hands jitt
 done
 for part in unseen_pairs comparison_pairs levers_summary; do has_place docs/results.md "$part"; done
 has_place README.md summary
+for part in hardware hardware_parts; do has_place docs/lab/charts.md "$part"; done

@@ -9,6 +9,7 @@ from pages.chart.chart_a import chart_a
 from pages.chart.chart_b import chart_b
 from pages.chart.chart_b_faults import chart_b_faults
 from pages.chart.chart_c import chart_c
+from pages.chart.chart_hardware import chart_hardware
 from pages.chart.results import read_results
 from pages.document import data_url, now, page_of, this_machine
 from pages.files import Problem, write_whole
@@ -71,7 +72,7 @@ def make_folder(folder):
 def run(values, complain):
     """The verb. Charts that cannot be drawn are named; if there is no other, that is an error."""
     results = read_results(values.results)
-    charts = [make(results) for make in (chart_a, chart_b, chart_b_faults, chart_c)]
+    charts = [make(results) for make in (chart_a, chart_b, chart_b_faults, chart_c, chart_hardware)]
     lacking = [f"{chart.name} {chart.lacking}" for chart in charts if chart.lacking]
     if len(lacking) == len(charts):
         raise Problem(f"no chart can be drawn from these results: {'; '.join(lacking)}")

@@ -9,7 +9,9 @@
 namespace handcast::simulate {
 namespace {
 
-constexpr double kGap_s = 0.01;  ///< no speed is computed over a longer gap
+/// No speed is computed over a longer gap, in which the hand was away; two refreshes of a projector
+/// of 60 Hz are closer.
+constexpr double kGap_s = 0.05;
 
 }  // namespace
 

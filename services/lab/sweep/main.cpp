@@ -29,7 +29,7 @@ struct Options {
 constexpr int kExitStopped = 130;  ///< as a shell names the end of a program by Ctrl-C
 
 const char* const kFooter = R"(A plan is a TOML file. The paths in it are relative to the file.
-  rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24    joints_only = false
+  rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24 (or draw_hz = 30)    joints_only = false
   [settings]    settings of all runs, e.g. twin.tracker.age_ms = 15; settings_from = "FILE.toml": a file of such settings
   [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"; with from = ["NAME"], it has
                 the settings of variants above, too, and the rig of the first

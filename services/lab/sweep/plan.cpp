@@ -29,6 +29,7 @@ struct Head {
   double seconds = Plan().seconds;
   double warm_up_s = Plan().warm_up_s;
   int draw_every = Plan().draw_every;
+  double draw_hz = Plan().draw_hz;
   bool joints_only = false;
   ReadByHand settings, variant, grid;
 };
@@ -45,6 +46,9 @@ void describe(Visitor& visitor, Head& head) {
                 "Time before it that is not scored.");
   visitor.field("draw_every", head.draw_every, config::between(1, 100000),
                 "Draws and scores every N-th projector frame.");
+  visitor.field("draw_hz", head.draw_hz, config::between(0, 10000, "Hz"),
+                "In place of draw_every: about so many projector frames a second are drawn and "
+                "scored, whatever the projector's rate. 0: draw_every counts.");
   visitor.field("joints_only", head.joints_only, "Draws nothing and scores only the landmarks.");
   visitor.section("settings", head.settings, "Settings of all runs.");
   visitor.section("variant", head.variant, "Variants of the rig.");
@@ -131,6 +135,7 @@ class Reader {
               head.seconds,
               head.warm_up_s,
               head.joints_only ? 0 : head.draw_every,
+              head.joints_only ? 0 : head.draw_hz,
               fixed(section(sections, "settings")),
               {},
               grids(section(sections, "grid"))};

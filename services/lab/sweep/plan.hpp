@@ -38,6 +38,7 @@ struct Variant {
 ///     seconds = 5
 ///     warm_up_s = 0.5
 ///     draw_every = 24                  # draws and scores every 24th projector frame
+///     draw_hz = 30                     # instead: about so many frames a second, of any projector
 ///     joints_only = false              # true: draws nothing and scores only the 21 landmarks
 ///     settings_from = "worlds/a.toml"  # settings of all runs that several plans share; those of
 ///                                      # the plan itself and its axes take precedence
@@ -63,6 +64,7 @@ struct Plan {
   double seconds = 5;             ///< scored time of a run
   double warm_up_s = 0.5;         ///< time before it that is not scored
   int draw_every = 24;            ///< 0 if joints_only
+  double draw_hz = 0;             ///< takes the place of draw_every if it is greater than 0
   std::vector<Axis> settings;     ///< fixed settings of all runs
   std::vector<Variant> variants;  ///< at least one
   std::vector<Grid> grids;        ///< at least one, possibly without axes

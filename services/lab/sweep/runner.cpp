@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -96,11 +97,14 @@ void Progress::show() {
                        terminal_ ? "" : "\n"));
 }
 
-simulate::Options options_of(const Plan& plan) {
+simulate::Options options_of(const Plan& plan, const config::Rig& rig) {
   simulate::Options options;
   options.seconds = plan.seconds;
   options.warm_up_s = plan.warm_up_s;
-  options.draw_every = plan.draw_every;
+  options.draw_every =
+      plan.draw_hz > 0
+          ? std::max(static_cast<int>(std::lround(rig.projector.rate_hz / plan.draw_hz)), 1)
+          : plan.draw_every;
   return options;
 }
 
@@ -109,7 +113,7 @@ Result<nlohmann::json> score(const Plan& plan, const Run& run) try {
   if (!rig) return tl::make_unexpected(rig.error());
   const auto calibration = calib::load_calibration(rig->calibration, rig->projector.packing);
   if (!calibration) return tl::make_unexpected(calibration.error());
-  const auto options = options_of(plan);
+  const auto options = options_of(plan, *rig);
   auto metrics = simulate::score(*rig, *calibration, options);
   if (!metrics) return metrics;
   if (auto why = simulate::why_nothing_was_scored(*metrics, options); !why.empty())

@@ -144,6 +144,7 @@ Result<Expansion> expand(const Plan& plan) {
   const auto folder = std::filesystem::absolute(plan.file).parent_path().lexically_normal();
   Hash hash;
   hash.add(fmt::format("{} {} {}", plan.seconds, plan.warm_up_s, plan.draw_every));
+  if (plan.draw_hz > 0) hash.add(fmt::format("{} Hz", plan.draw_hz));
   Contents contents;
   config::Faults faults;
   std::vector<std::string> known;

@@ -9,13 +9,15 @@ import unittest
 import xml.dom.minidom
 
 from programs import REPOSITORY, Test
-from sweeps import write_all, write_failures, write_ladder, write_stress, write_sweep
+from sweeps import write_all, write_failures, write_hardware, write_ladder, write_stress, write_sweep
 
 from pages import palette
 from pages.chart import write
 from pages.chart.analysis import breakdown_point, pareto_front, spread_apart
 from pages.chart.chart_b_faults import chart_b_faults
+from pages.chart.chart_hardware import lines_of as hardware_lines_of
 from pages.chart.faults import failures_of
+from pages.chart.hardware import Projector, pairs_of
 from pages.chart.ladder import ladder_of
 from pages.chart.picture import Range, range_of
 from pages.chart.results import PLAIN_SETTINGS, mean_of, read_results
@@ -200,10 +202,10 @@ class AllCharts(Drawn):
     def test_are_on_a_page_that_needs_nothing_else_in_the_colours_of_both_schemes(self):
         self.assertEqual(self.draw(*write_all(self.folder), title="a <title>"), [])
         page = self.text_of("charts.html")
-        for name in ("chart_a", "chart_b", "chart_b_faults", "chart_c"):
+        for name in ("chart_a", "chart_b", "chart_b_faults", "chart_c", "hardware"):
             self.assertIn(f'<section id="{name}">', page)
-        self.assertEqual(page.count('<img alt="'), 4)
-        self.assertEqual(page.count('<source media="(prefers-color-scheme: dark)" srcset="data:image/svg+xml;base64,'), 4)
+        self.assertEqual(page.count('<img alt="'), 5)
+        self.assertEqual(page.count('<source media="(prefers-color-scheme: dark)" srcset="data:image/svg+xml;base64,'), 5)
         self.assertIn("<h1>a &lt;title&gt;</h1>", page)
         self.assert_needs_no_network(page)
         self.assert_colours_of_both_schemes(page)
@@ -235,6 +237,28 @@ class AllCharts(Drawn):
         self.assertNotIn("paper", self.text_of("chart_c.csv"))
 
 
+class Hardware(Drawn):
+    def test_has_a_pair_for_each_method_camera_projector_and_speed(self):
+        pairs = pairs_of(read_results([write_hardware(self.folder), write_stress(self.folder)]))
+        self.assertEqual(len(pairs), 16, "those of other plans are none")
+        pair, = (pair for pair in pairs if (pair.method.variant, pair.camera_hz, pair.projector, pair.speed) ==
+                 ("paper", 60, Projector(60, 50), 3))
+        self.assertEqual((pair.mean_mm, pair.runs), (13.5, 2), "the mean of two seeds")
+
+    def test_is_drawn_by_camera_from_the_slowest_projector_to_the_fastest(self):
+        pairs = pairs_of(read_results([write_hardware(self.folder)]))
+        lines = hardware_lines_of(pairs, 1)
+        self.assertEqual([(line.method.variant, line.camera_hz) for line in lines],
+                         [("paper", 60), ("paper", 525), ("handcast", 60), ("handcast", 525)])
+        self.assertEqual(lines[-1].points([Projector(60, 50), Projector(946, 3)]), [(0, 8.5), (1, 5.5)])
+
+    def test_has_its_numbers_in_a_file(self):
+        self.draw(write_hardware(self.folder))
+        self.assertIn('natural speed,handcast,525,"60 Hz, 50 ms",8.5,12,0.1,-0.5,7.5,2', self.text_of("hardware.csv").splitlines())
+        for words in ("natural speed", "3 times as fast", ">946 Hz<", ">50 ms<"):
+            self.assertIn(words, self.text_of("hardware.svg"))
+
+
 class AChart(Drawn):
     def test_is_the_same_picture_if_the_results_are_the_same(self):
         files = [write_stress(self.folder)]
@@ -260,7 +284,7 @@ class AChart(Drawn):
 
     def test_that_cannot_be_drawn_is_named_and_the_rest_is_drawn(self):
         said = self.draw(write_stress(self.folder))
-        self.assertEqual([line.partition(" needs ")[0] for line in said], ["chart_a", "chart_b_faults", "chart_c"])
+        self.assertEqual([line.partition(" needs ")[0] for line in said], ["chart_a", "chart_b_faults", "chart_c", "hardware"])
         self.assertIn("Not drawn: the chart needs drawn runs", self.text_of("charts.html"))
         self.assertFalse((self.out / "chart_a.svg").exists())
 

@@ -42,6 +42,21 @@ def write_failures(folder):
                         "handcast,,,builtin:cross_fingers,,2.2,0.99,0.01,0,,,,"])
 
 
+def write_hardware(folder):
+    """Two cameras with two projectors. The slower projector costs 3 mm, the slower camera 1 mm, the paper's method 4 mm; two seeds
+    differ by 1 mm."""
+    rows = []
+    for method, method_mm in (("handcast", 0), ("paper", 4)):
+        for camera, camera_mm in ((60, 1), (525, 0)):
+            for projector, projector_mm in (("946,3", 0), ("60,50", 3)):
+                for speed in (1, 3):
+                    rows += [f"{method}_{camera},{projector},builtin:coin,{speed},{seed},{4 + seed + method_mm + camera_mm + projector_mm},"
+                             f"12,0.1,-0.5,{60 - camera / 10:g}," for seed in (1, 2)]
+    columns = ("projector.rate_hz,projector.latency_ms,twin.motion,twin.speed,twin.seed,interior_mm_mean,interior_mm_p95,off_10mm,"
+               "equivalent_latency_ms,motion_to_photon_ms")
+    return write_sweep(folder, "hardware", columns, rows)
+
+
 def write_all(folder):
     """The files of all charts."""
-    return [write_ladder(folder), write_stress(folder), write_failures(folder)]
+    return [write_ladder(folder), write_stress(folder), write_failures(folder), write_hardware(folder)]

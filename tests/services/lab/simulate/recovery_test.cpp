@@ -212,6 +212,16 @@ TEST(HandSpeed, IsThePathOfTheLandmarksOverTime) {
   EXPECT_NEAR(speed.to_json()["p95"], 2.0, 0.011);
 }
 
+TEST(HandSpeed, IsKnownAtTheSlowestProjectors) {
+  HandSpeed speed;
+  std::array<glm::dvec3, msg::kLandmarks> landmarks{};
+  for (int i = 1; i <= 3; ++i) {
+    for (auto& landmark : landmarks) landmark.x += 0.001;
+    speed.add(msg::Side::left, landmarks, 16'666'667 * i);
+  }
+  EXPECT_NEAR(speed.to_json()["mean"], 0.06, 1e-6);
+}
+
 TEST(HandSpeed, AHandThatComesBackElsewhereDidNotFlyThere) {
   HandSpeed speed;
   std::array<glm::dvec3, msg::kLandmarks> landmarks{};

@@ -275,10 +275,11 @@ TEST(Fingerprint, IsTheSameOnlyWhereEveryRunIs) {
   };
   changed("[settings]", "seconds = 7\n[settings]");
   changed("[settings]", "joints_only = true\n[settings]");
+  changed("[settings]", "draw_hz = 30\n[settings]");
   changed("age_ms = 15", "age_ms = 16");
   changed("name = \"still\"", "name = \"calm\"");
   changed("2.5, 3", "3, 2.5");
-  EXPECT_EQ(all.size(), 6u);
+  EXPECT_EQ(all.size(), 7u);
 }
 
 TEST(Fingerprint, ChangesWithTheRigFile) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -147,14 +148,65 @@ std::set<std::string> values_in(const std::string& plan_name, const std::string&
 
 TEST(ShippedPlans, TheTablesOfAccuracyAreOfACarefulInstallation) {
   const auto careful = rigs_of("comparison").front().second;
-  for (const auto* name :
-       {"levers", "fidelity", "motions", "fast", "two_hands", "jitter", "first_seconds", "unseen"})
+  for (const auto* name : {"levers", "fidelity", "motions", "fast", "two_hands", "jitter",
+                           "first_seconds", "unseen", "hardware"})
     for (const auto& [variant, rig] : rigs_of(name)) {
       EXPECT_EQ(rig.twin.shape.roll_deg, careful.twin.shape.roll_deg) << name << " " << variant;
-      EXPECT_THAT(differences_in(rig, careful, {"twin.geometry.", "twin.tracker.", "twin.image."}),
-                  testing::IsEmpty())
-          << name << " " << variant;
+      auto others =
+          differences_in(rig, careful, {"twin.geometry.", "twin.tracker.", "twin.image."});
+      if (name == std::string_view("hardware")) std::erase(others, "twin.image.delivery_ms");
+      EXPECT_THAT(others, testing::IsEmpty()) << name << " " << variant;
     }
+}
+
+/// The settings that make a camera or a projector in hardware.toml.
+const std::vector<std::string> kOfDevices{
+    "camera.rate_hz",        "camera.exposure_ms",      "twin.image.delivery_ms",
+    "twin.detector.age_ms",  "projector.rate_hz",       "projector.latency_ms",
+    "projector.software_ms", "twin.projector.rate_ppm", "cascade.predict.limit_ms"};
+
+TEST(ShippedPlans, HardwareDiffersFromTheUnseenInDevicesAlone) {
+  std::map<std::string, config::Rig> unseen;
+  for (const auto& [name, rig] : rigs_of("unseen")) unseen.emplace(name, rig);
+  const auto rigs = rigs_of("hardware");
+  EXPECT_EQ(rigs.size(), 10u);
+  for (const auto& [name, rig] : rigs) {
+    auto others = config::differences(rig, unseen.at(name.substr(0, name.find('_'))));
+    std::erase_if(others,
+                  [](const std::string& path) { return std::ranges::count(kOfDevices, path); });
+    EXPECT_THAT(others, testing::IsEmpty()) << name;
+  }
+}
+
+TEST(ShippedPlans, OtherPartsAreComparedWithAPairOfHardware) {
+  std::map<std::string, config::Rig> pairs;
+  for (const auto& [name, rig] : rigs_of("hardware")) pairs.emplace(name, rig);
+  const auto parts = rigs_of("hardware_parts");
+  ASSERT_EQ(parts.size(), 6u);
+  EXPECT_EQ(parts.front().first, "usual");
+  EXPECT_THAT(config::differences(parts.front().second, pairs.at("handcast_120")),
+              testing::UnorderedElementsAre("projector.rate_hz", "projector.latency_ms"));
+  EXPECT_EQ(parts.front().second.projector.rate_hz, 120);
+}
+
+TEST(ShippedPlans, NoDeviceOfHardwareIsFasterThanItsRatePermits) {
+  const auto plan = load_plan(source_root() / "config/sweeps/hardware.toml");
+  ASSERT_TRUE(plan) << plan.error().what;
+  const auto expansion = expand(*plan);
+  ASSERT_TRUE(expansion) << expansion.error().what;
+  std::set<std::pair<double, double>> pairs;
+  for (const auto& run : expansion->runs) {
+    const auto rig = rig_of(*plan, run);
+    const auto& camera = rig->camera;
+    EXPECT_EQ(plan->variants[run.variant].name.substr(rig->name == "paper" ? 6 : 9),
+              fmt::format("{}", camera.rate_hz));
+    EXPECT_LT(camera.exposure_ms, 1e3 / camera.rate_hz);
+    // What a detector takes is the same with all cameras.
+    EXPECT_NEAR(rig->twin.detector.age_ms - camera.exposure_ms / 2 - rig->twin.image.delivery_ms,
+                rig->name == "paper" ? 15 : 3.8, 0.05);
+    pairs.emplace(camera.rate_hz, rig->projector.rate_hz);
+  }
+  EXPECT_EQ(pairs.size(), 20u);
 }
 
 TEST(ShippedPlans, TheUnseenMotionsAreInNoOtherPlan) {
@@ -163,7 +215,9 @@ TEST(ShippedPlans, TheUnseenMotionsAreInNoOtherPlan) {
   EXPECT_EQ(values_in("unseen", "mesh"), (std::set<std::string>{"implicit", "webxr"}));
   for (const auto& file : std::filesystem::directory_iterator(source_root() / "config/sweeps")) {
     const auto name = file.path().stem().string();
-    if (file.path().extension() != ".toml" || name == "unseen") continue;
+    // Nothing is chosen on hardware.toml and hardware_parts.toml either.
+    if (file.path().extension() != ".toml" || name == "unseen" || name.starts_with("hardware"))
+      continue;
     for (const auto& motion : values_in(name, "motion"))
       EXPECT_FALSE(unseen.contains(motion)) << name << ": " << motion;
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
@@ -157,6 +158,27 @@ TEST_F(SweepTest, AMotionThatIsNotThereIsLeftOut) {
               HasSubstr("there is no folder /plans/nowhere; left out: runs 0"));
   EXPECT_EQ(outcome.absent, 1u);
   EXPECT_EQ(outcome.scored, 1u);
+}
+
+TEST_F(SweepTest, AsManyFramesASecondAreScoredOfEachProjector) {
+  const auto plan = [](const char* drawn, int rate_hz) {
+    return fmt::format(
+        "{}\nseconds = 0.2\nwarm_up_s = 0.05\n[settings]\nlandmarks.backend = \"twin\"\n"
+        "[grid]\nprojector.rate_hz = [{}]\n",
+        drawn, rate_hz);
+  };
+  const auto figures = [&](const std::string& toml) {
+    sweep(toml, "a.csv");
+    const auto table = read_table(file("a.csv"));
+    std::filesystem::remove(file("a.csv"));
+    Row row;
+    for (std::size_t i = 0; i < table->heading.columns.size(); ++i)
+      if (!is_machine_time(table->heading.columns[i])) row.push_back(table->rows[0][i]);
+    return row;
+  };
+  EXPECT_EQ(figures(plan("draw_hz = 30", 240)), figures(plan("draw_every = 8", 240)));
+  EXPECT_EQ(figures(plan("draw_hz = 30", 60)), figures(plan("draw_every = 2", 60)));
+  EXPECT_EQ(figures(plan("draw_hz = 30", 10)), figures(plan("draw_every = 1", 10)));
 }
 
 /// Compares all metrics of drawn frames bit by bit, except for the times.
