@@ -88,6 +88,7 @@ void describe(Visitor& visitor, ProjectorWindow& window) {
 struct Projector {
   std::string backend = "twin";
   PainterChoice painter = PainterChoice::cpu;
+  int painter_threads = 1;
   double rate_hz = 946;
   double latency_ms = 3.0;
   double software_ms = 1.2;
@@ -112,6 +113,10 @@ void describe(Visitor& visitor, Projector& projector) {
                 "window; cpu, if it cannot be opened or is lost. auto: both are measured at "
                 "each start of the projector, for at most 0.3 s, and the faster one draws. The "
                 "simulator always draws with cpu.");
+  visitor.field("painter_threads", projector.painter_threads, between(1, 8),
+                "Threads on which the painter cpu draws. More make a frame shorter where the "
+                "projector has as many cores to itself, and take that time from other services "
+                "where it has not.");
   visitor.field("rate_hz", projector.rate_hz, between(1, 10000, "Hz"),
                 "Frames per second requested from the projector.");
   visitor.field("latency_ms", projector.latency_ms, between(0, 200, "ms"),

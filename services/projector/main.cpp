@@ -23,7 +23,8 @@ static void run_projector(service::Context& context) {
   const auto pipeline = must(renderer::Pipeline::create(
       rig.cascade, rig.content, rig.hand, calibration, {},
       renderer::open_painter(rig.projector.painter, calibration.projector.width_px,
-                             calibration.projector.height_px, shares)));
+                             calibration.projector.height_px, shares,
+                             rig.projector.painter_threads)));
   pipeline->show_surface(true);  // an observer may come at any time
   prefault_memory();             // before the turn of a standby, which must be short
   context.stand_by();

@@ -186,15 +186,16 @@ std::unique_ptr<Painter> faster_of(std::unique_ptr<Painter> cpu, OpenedGl gl, in
 }  // namespace
 
 std::unique_ptr<Painter> open_painter(config::PainterChoice choice, int width_px, int height_px,
-                                      const ShareGroup& shares) {
-  if (choice == config::PainterChoice::cpu) return make_cpu_painter(width_px, height_px);
+                                      const ShareGroup& shares, int threads) {
+  if (choice == config::PainterChoice::cpu) return make_cpu_painter(width_px, height_px, threads);
   auto gl = open_gl(width_px, height_px, shares);
   if (!gl) {
     log::warning("painter gl cannot be opened: {}; drawing with cpu", gl.error().what);
-    return make_cpu_painter(width_px, height_px);
+    return make_cpu_painter(width_px, height_px, threads);
   }
   if (choice == config::PainterChoice::automatic)
-    return faster_of(make_cpu_painter(width_px, height_px), std::move(*gl), width_px, height_px);
+    return faster_of(make_cpu_painter(width_px, height_px, threads), std::move(*gl), width_px,
+                     height_px);
   log::info("painter gl: {}", gl->gpu);
   return std::move(gl->painter);
 }

@@ -40,8 +40,8 @@ std::pair<FrameTime, FrameTime> contest(Painter& one, Painter& other, int width_
 /// Opens the painter that the settings ask for, for images of this size. It logs what draws, and
 /// for `auto` what it measured. A painter gl that cannot be opened is replaced by cpu with a
 /// warning. `shares`: where the output finds images of a GPU; a painter that cannot share with it
-/// reads its images back.
+/// reads its images back. `threads`: of a painter cpu.
 std::unique_ptr<Painter> open_painter(config::PainterChoice choice, int width_px, int height_px,
-                                      const ShareGroup& shares = {});
+                                      const ShareGroup& shares = {}, int threads = 1);
 
 }  // namespace handcast::renderer
