@@ -63,8 +63,7 @@ class FakePainter final : public Painter {
     return {};
   }
   View<const std::uint32_t> colour() override { return {}; }
-  View<const glm::vec2> uv() override { return {}; }
-  View<const SurfaceId> surface() override { return {}; }
+  Shown shown(int) override { return {}; }
 
   int frames = 0;
 
