@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/frame_pipeline.hpp"
 
+#include "renderer/draw/cpu/cpu_painter.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/swaying_hands.hpp"
 
@@ -62,7 +63,9 @@ std::vector<FrameTimes> time_frames(std::span<const FrameScene> scenes, int fram
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const FrameScene& scene = scenes[i];
     const calib::Calibration rig = rig_of(scene);
-    auto pipeline = Pipeline::create(scene.cascade, {.smooth = scene.smooth}, {}, rig);
+    auto pipeline = Pipeline::create(
+        scene.cascade, {.smooth = scene.smooth}, {}, rig, {},
+        make_cpu_painter(scene.screen_width_px, scene.screen_height_px, scene.threads));
     if (!pipeline) {
       times[i].error = pipeline.error().what;
       return times;

@@ -21,6 +21,7 @@ struct FrameScene {
   int screen_width_px = 1024, screen_height_px = 768, image_width_px = 720, image_height_px = 540;
   /// @}
   bool smooth = true;  ///< config::Content::smooth
+  int threads = 1;     ///< config::Projector::painter_threads
   config::Cascade cascade{};
 };
 

@@ -33,7 +33,9 @@ class CpuPainter final : public Painter {
         crew_(threads - 1),
         targets_(static_cast<std::size_t>(crew_.size()), RasterTarget(width_px, kBand)),
         filler_(width_px, height_px),
-        frame_(width_px, height_px) {}
+        frame_(width_px, height_px) {
+    samplers_.reserve(4);
+  }
 
   void draw(std::span<const DrawnHand> hands, Rect region) override {
     shown_step_ = 0;

@@ -245,6 +245,16 @@ void colour_band(Rect band, std::span<const Sampler> samplers, RasterTarget& tar
 
 }  // namespace
 
+Drawer::Drawer() {
+  constexpr std::size_t kVertices = 4096, kTriangles = 2 * kVertices;
+  for (Placed& placed : placed_) {
+    placed.corners.reserve(kVertices);
+    placed.ids.reserve(kVertices);
+    placed.areas.reserve(kTriangles);
+    placed.bins.reserve(kTriangles);
+  }
+}
+
 void Drawer::place(const DrawnHand& hand, const Sampler& sampler, int index, Rect region) {
   Placed& placed = placed_[static_cast<std::size_t>(index)];
   placed.corners.resize(hand.mesh->vertex_count());
@@ -265,7 +275,6 @@ void Drawer::place(const DrawnHand& hand, const Sampler& sampler, int index, Rec
 void Drawer::draw(std::span<const DrawnHand> hands, std::span<const Sampler> samplers, Rect region,
                   Crew& crew, std::span<RasterTarget> targets, FrameBuffer& out) {
   crew.rouse();
-  placed_.resize(std::max(placed_.size(), hands.size()));
   for (std::size_t i = 0; i < hands.size(); ++i)
     place(hands[i], samplers[i], static_cast<int>(i), region);
   const int first = region.y0 / kBand, last = (region.y1 - 1) / kBand;

@@ -145,39 +145,43 @@ FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, Frame
 void Filler::make_patches(const config::Fill& settings, Rect region,
                           std::span<const Sampler> samplers, const FrameBuffer& frame) {
   table_.set_up(settings);
-  for (const NearestSeed& seed :
-       nearest_.find(part_of(lit_, region), part_of(unlit_, region), table_.reach_px)) {
-    const std::uint32_t full = table_.strength[seed.squared_px];
-    if (full == 0) continue;
-    const int x = seed.x + region.x0, y = seed.y + region.y0;
-    const int seed_x = x + seed.dx, seed_y = y + seed.dy;
-    const int mirror_x = seed_x + seed.dx, mirror_y = seed_y + seed.dy;
-    const SurfaceId surface = frame.surface.row(seed_y)[seed_x];
-    const std::uint16_t shade = frame.shade.row(seed_y)[seed_x];
-    const Sampler& sampler = samplers[surface / 64];
-    const TexelMap& map = sampler.maps()[level_of(shade)];
-    glm::vec2 place = frame.place.row(seed_y)[seed_x];
-    const bool inside = mirror_x >= region.x0 && mirror_x < region.x1 && mirror_y >= region.y0 &&
-                        mirror_y < region.y1;
-    if (inside && frame.surface.row(mirror_y)[mirror_x] == surface) {
-      glm::vec2 mirrored = frame.place.row(mirror_y)[mirror_x];
-      if (const std::uint16_t its = frame.shade.row(mirror_y)[mirror_x];
-          level_of(its) != level_of(shade))
-        mirrored = map.place(sampler.maps()[level_of(its)].uv(mirrored));
-      const glm::vec2 step = place - mirrored, step_uv = step * map.inverse_scale;
-      if (glm::dot(step_uv, step_uv) <= table_.squared_limit_uv[seed.squared_px]) place += step;
-    }
-    patches_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), place,
-                        static_cast<float>(light_of(shade) * full) / (255 * 256), shade, surface,
-                        table_.alpha[seed.squared_px]});
-  }
+  const Rect rows = nearest_.start(part_of(lit_, region), part_of(unlit_, region), table_.reach_px);
+  for (int row = rows.y0; row < rows.y1; ++row)
+    for (const NearestSeed& seed : nearest_.of_row(row)) add_patch(seed, region, samplers, frame);
 }
 
-void Filler::apply_patches(std::span<const Sampler> samplers, FrameBuffer& frame) {
+void Filler::add_patch(const NearestSeed& seed, Rect region, std::span<const Sampler> samplers,
+                       const FrameBuffer& frame) {
+  const std::uint32_t full = table_.strength[seed.squared_px];
+  if (full == 0) return;
+  const int x = seed.x + region.x0, y = seed.y + region.y0;
+  const int seed_x = x + seed.dx, seed_y = y + seed.dy;
+  const int mirror_x = seed_x + seed.dx, mirror_y = seed_y + seed.dy;
+  const SurfaceId surface = frame.surface.row(seed_y)[seed_x];
+  const std::uint16_t shade = frame.shade.row(seed_y)[seed_x];
+  const Sampler& sampler = samplers[surface / 64];
+  const TexelMap& map = sampler.maps()[level_of(shade)];
+  glm::vec2 place = frame.place.row(seed_y)[seed_x];
+  const bool inside = mirror_x >= region.x0 && mirror_x < region.x1 && mirror_y >= region.y0 &&
+                      mirror_y < region.y1;
+  if (inside && frame.surface.row(mirror_y)[mirror_x] == surface) {
+    glm::vec2 mirrored = frame.place.row(mirror_y)[mirror_x];
+    if (const std::uint16_t its = frame.shade.row(mirror_y)[mirror_x];
+        level_of(its) != level_of(shade))
+      mirrored = map.place(sampler.maps()[level_of(its)].uv(mirrored));
+    const glm::vec2 step = place - mirrored, step_uv = step * map.inverse_scale;
+    if (glm::dot(step_uv, step_uv) <= table_.squared_limit_uv[seed.squared_px]) place += step;
+  }
+  patches_.push_back({static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), place,
+                      static_cast<float>(light_of(shade) * full) / (255 * 256), shade, surface,
+                      table_.alpha[seed.squared_px]});
+}
+
+void Filler::apply_patches(std::span<const Patch> patches, std::span<const Sampler> samplers,
+                           FrameBuffer& frame) {
   constexpr std::size_t kCount = Lookup::kCount;
-  places_.resize(std::max(places_.size(), (patches_.size() + kCount - 1) / kCount));
-  for (std::size_t i = 0; i < patches_.size(); ++i) {
-    const Patch& patch = patches_[i];
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    const Patch& patch = patches[i];
     const Sampler& sampler = samplers[patch.surface / 64];
     auto& [at, factor] = places_[i / kCount];
     const auto lane = static_cast<int>(i % kCount);
@@ -187,10 +191,10 @@ void Filler::apply_patches(std::span<const Sampler> samplers, FrameBuffer& frame
     factor[lane] = patch.factor;
   }
   alignas(64) std::array<std::uint32_t, kCount> colours;
-  for (std::size_t first = 0; first < patches_.size(); first += kCount) {
+  for (std::size_t first = 0; first < patches.size(); first += kCount) {
     mix_patches(places_[first / kCount].at, places_[first / kCount].factor, colours.data());
-    for (std::size_t i = first; i < std::min(first + kCount, patches_.size()); ++i)
-      put(patches_[i], colours[i - first], frame);
+    for (std::size_t i = first; i < std::min(first + kCount, patches.size()); ++i)
+      put(patches[i], colours[i - first], frame);
   }
 }
 
@@ -214,7 +218,10 @@ FillCounts Filler::fill(View<const std::uint8_t> mask, const config::Fill& setti
   FillCounts counts = sort_pixels(mask, region, frame);
   if (counts.lit != 0 && counts.dark != 0) {
     make_patches(settings, region, samplers, frame);
-    apply_patches(samplers, frame);
+    constexpr std::size_t kSome = std::tuple_size_v<decltype(places_)> * Lookup::kCount;
+    for (std::size_t first = 0; first < patches_.size(); first += kSome)
+      apply_patches(std::span(patches_).subspan(first, std::min(kSome, patches_.size() - first)),
+                    samplers, frame);
     counts.filled = static_cast<int>(patches_.size());
     counts.dark -= counts.filled;
   }

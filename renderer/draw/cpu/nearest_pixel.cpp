@@ -79,6 +79,10 @@ Rect bounds_of(View<const std::uint8_t> set) {
   return bounds;
 }
 
+constexpr int whole_vectors(int count) { return (count + 63) / 64 * 64; }
+/// Beside a row of squares: whoever searches at its ends reads them.
+constexpr std::size_t kMargins = 2 * NearestPixel::kLargestReach + kBlock;
+
 struct Block {
   alignas(64) std::array<std::int16_t, kBlock> best;   ///< squared distance of the nearest seed
   alignas(64) std::array<std::int16_t, kBlock> shift;  ///< columns from the pixel to that seed
@@ -129,7 +133,7 @@ HANDCAST_CLONES void keep_within(const Block& block, int limit, std::uint8_t* __
 void NearestPixel::sweep_columns(View<const std::uint8_t> seeds, Rect area) {
   const int count = area.width();
   area_ = area;
-  to_seed_stride_ = (count + 63) / 64 * 64;
+  to_seed_stride_ = whole_vectors(count);
   to_seed_.resize(static_cast<std::size_t>(to_seed_stride_) * area.height());
   rows_below_.assign(count, kNoRow);
   const auto line = [&](int y) {
@@ -147,44 +151,63 @@ void NearestPixel::sweep_columns(View<const std::uint8_t> seeds, Rect area) {
   }
 }
 
-void NearestPixel::scan_row(const std::uint8_t* wanted, int y, Rect wanted_area, int reach_px) {
+NearestPixel::NearestPixel(int width, int height) {
+  to_seed_.reserve(static_cast<std::size_t>(whole_vectors(width)) * height);
+  rows_below_.reserve(static_cast<std::size_t>(width));
+  squares_.reserve(static_cast<std::size_t>(width) + kMargins);
+  row_.reserve(static_cast<std::size_t>(width) + kBlock);
+}
+
+Rect NearestPixel::start(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted,
+                         int reach_px) {
+  reach_px_ = std::clamp(reach_px, 0, kLargestReach);
+  wanted_ = wanted;
+  wanted_area_ = bounds_of(wanted);
+  if (wanted_area_.empty()) return {};
+  sweep_columns(seeds, wanted_area_.grown(reach_px_).within(wanted.width, wanted.height));
+  squares_.assign(static_cast<std::size_t>(area_.width()) + kMargins, kFar);
+  row_.resize(static_cast<std::size_t>(wanted_area_.width()) + kBlock);
+  return wanted_area_;
+}
+
+std::span<const NearestSeed> NearestPixel::of_row(int y) {
+  const std::uint8_t* const wanted = wanted_.row(y);
+  const int first = wanted_area_.x0 + first_set(wanted + wanted_area_.x0, wanted_area_.width());
+  if (first == wanted_area_.x1) return {};
   const std::int8_t* to_seed =
       to_seed_.data() + static_cast<std::ptrdiff_t>(y - area_.y0) * to_seed_stride_;
   std::int16_t* squares = squares_.data() + kLargestReach;
-  const int first = wanted_area.x0 + first_set(wanted + wanted_area.x0, wanted_area.width());
-  if (first == wanted_area.x1) return;
   square_row(to_seed, squares, area_.width());
-  const int limit = reach_px * reach_px;
+  const int limit = reach_px_ * reach_px_;
   Block block;
-  for (int x = first; x < wanted_area.x1; x += kBlock) {
+  NearestSeed* out = row_.data();
+  for (int x = first; x < wanted_area_.x1; x += kBlock) {
     alignas(64) std::array<std::uint8_t, kBlock> here{};
-    std::memcpy(here.data(), wanted + x, std::min(kBlock, wanted_area.x1 - x));
+    std::memcpy(here.data(), wanted + x, std::min(kBlock, wanted_area_.x1 - x));
     if (first_set(here.data(), kBlock) == kBlock) continue;
-    scan_block(squares + (x - area_.x0), here.data(), reach_px, block);
+    scan_block(squares + (x - area_.x0), here.data(), reach_px_, block);
     keep_within(block, limit, here.data());
-    if (found_.size() < count_ + kBlock) found_.resize(2 * (count_ + kBlock));
     for (int eight = 0; eight < kBlock; eight += 8)
       for (std::uint64_t left = load_eight(here.data() + eight); left != 0; left &= left - 1) {
         const int i = eight + std::countr_zero(left) / 8;
         const int dx = block.shift[i];
         const std::int8_t dy = to_seed[x - area_.x0 + i + dx];
-        found_[count_++] = {static_cast<std::int16_t>(x + i), static_cast<std::int16_t>(y),
-                            static_cast<std::int8_t>(dx), dy, block.best[i]};
+        *out++ = {static_cast<std::int16_t>(x + i), static_cast<std::int16_t>(y),
+                  static_cast<std::int8_t>(dx), dy, block.best[i]};
       }
   }
+  return std::span(row_.data(), out);
 }
 
 std::span<const NearestSeed> NearestPixel::find(View<const std::uint8_t> seeds,
                                                 View<const std::uint8_t> wanted, int reach_px) {
-  count_ = 0;
-  reach_px = std::clamp(reach_px, 0, kLargestReach);
-  const Rect wanted_area = bounds_of(wanted);
-  if (wanted_area.empty()) return {};
-  sweep_columns(seeds, wanted_area.grown(reach_px).within(wanted.width, wanted.height));
-  squares_.assign(kLargestReach + area_.width() + kBlock + kLargestReach, kFar);
-  for (int y = wanted_area.y0; y < wanted_area.y1; ++y)
-    scan_row(wanted.row(y), y, wanted_area, reach_px);
-  return std::span(found_).first(count_);
+  all_.clear();
+  const Rect rows = start(seeds, wanted, reach_px);
+  for (int y = rows.y0; y < rows.y1; ++y) {
+    const auto row = of_row(y);
+    all_.insert(all_.end(), row.begin(), row.end());
+  }
+  return all_;
 }
 
 }  // namespace handcast::renderer::cpu

@@ -30,24 +30,33 @@ class NearestPixel {
   /// Limit of `reach_px`.
   static constexpr int kLargestReach = 32;
 
-  /// `seeds` and `wanted` have the same size; pixels that are not 0 are set. Returns the wanted
-  /// pixels row by row, without those that have no seed within `reach_px`; valid until the next
-  /// call. Only the area around the wanted pixels is processed.
+  /// Allocates nothing later for images of at most this size.
+  explicit NearestPixel(int width = 0, int height = 0);
+
+  /// Begins a search. `seeds` and `wanted` have the same size; pixels that are not 0 are set. Only
+  /// the area around the wanted pixels is processed. Returns their bounds. Both images must stay
+  /// until the last of_row().
+  Rect start(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted, int reach_px);
+  /// The wanted pixels of a row, without those that have no seed within the reach. Valid until the
+  /// next call.
+  std::span<const NearestSeed> of_row(int y);
+  /// The same of all rows, from a search of its own. Valid until the next call.
   std::span<const NearestSeed> find(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted,
                                     int reach_px);
 
  private:
   void sweep_columns(View<const std::uint8_t> seeds, Rect area);
-  void scan_row(const std::uint8_t* wanted, int y, Rect wanted_area, int reach_px);
 
   /// Per pixel of area_: rows to the nearest seed in its column, -100 if that is too far.
   std::vector<std::int8_t> to_seed_;
   std::vector<std::uint8_t> rows_below_;
   std::vector<std::int16_t> squares_;  ///< of one row of to_seed_, with a margin on both sides
   int to_seed_stride_ = 0;
-  Rect area_;
-  std::vector<NearestSeed> found_;  ///< the first count_ are those of the last call
-  std::size_t count_ = 0;
+  Rect area_, wanted_area_;
+  View<const std::uint8_t> wanted_;
+  int reach_px_ = 0;
+  std::vector<NearestSeed> row_;  ///< has room for a whole row
+  std::vector<NearestSeed> all_;  ///< of find()
 };
 
 }  // namespace handcast::renderer::cpu

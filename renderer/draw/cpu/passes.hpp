@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -24,6 +25,9 @@ namespace handcast::renderer::cpu {
 /// Draws in two steps: geometry into a raster target, then colour for the visible pixels.
 class Drawer {
  public:
+  /// Allocates nothing later for hands of at most 4096 vertices.
+  Drawer();
+
   /// Draws `hands` into `region` of `out`. `samplers`: of their pictures. `targets`, one
   /// for each thread of the crew, are overwritten, a band at a time.
   void draw(std::span<const DrawnHand> hands, std::span<const Sampler> samplers, Rect region,
@@ -40,7 +44,7 @@ class Drawer {
   };
   void place(const DrawnHand& hand, const Sampler& sampler, int index, Rect region);
 
-  std::vector<Placed> placed_;  ///< by index; kept for their memory
+  std::array<Placed, 4> placed_;  ///< by index, see surface_id()
 };
 
 /// Rasterises the moved cells of a grid with their source positions as the interpolated values,
@@ -48,6 +52,9 @@ class Drawer {
 /// grid wins (row by row, from the left).
 class Warper {
  public:
+  /// Allocates nothing later for grids of at most 16,384 cells.
+  Warper();
+
   /// Warps the part `from` of `in` into `region` of `out`. `target` is overwritten, a band at a
   /// time.
   void warp(const WarpGrid& grid, Rect from, Rect region, const FrameBuffer& in,
@@ -71,7 +78,10 @@ class Warper {
 class Filler {
  public:
   /// For drawings of the given size in pixels.
-  Filler(int width, int height) : lit_(width, height), unlit_(width, height) {}
+  Filler(int width, int height)
+      : lit_(width, height), unlit_(width, height), nearest_(width, height) {
+    patches_.reserve(static_cast<std::size_t>(width) * height / 8);
+  }
 
   /// Removes light outside `mask` and fills inside it, in `region` of `frame`. `samplers`: those of
   /// the drawing.
@@ -95,19 +105,22 @@ class Filler {
   FillCounts sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame);
   void make_patches(const config::Fill& settings, Rect region, std::span<const Sampler> samplers,
                     const FrameBuffer& frame);
-  void apply_patches(std::span<const Sampler> samplers, FrameBuffer& frame);
+  void add_patch(const NearestSeed& seed, Rect region, std::span<const Sampler> samplers,
+                 const FrameBuffer& frame);
+  void apply_patches(std::span<const Patch> patches, std::span<const Sampler> samplers,
+                     FrameBuffer& frame);
   static void put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame);
 
   Plane<std::uint8_t> lit_, unlit_;  ///< regions D and C of the paper, 255 or 0
   NearestPixel nearest_;
   std::vector<Patch> patches_;
-  /// The places of the patches, 16 at once, and their factors. All are read before the first is
+  /// The places of some patches, 16 at once, and their factors. All are read before the first is
   /// mixed, so that no vector waits for what was just written number by number.
   struct Places {
     Lookup at{};
     alignas(64) float factor[Lookup::kCount] = {};
   };
-  std::vector<Places> places_;
+  std::array<Places, 16> places_{};
   FillTable table_;
 };
 

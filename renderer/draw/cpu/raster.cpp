@@ -277,6 +277,13 @@ void RasterTarget::start(int first) {
   first_ = first;
 }
 
+void TriangleBins::reserve(std::size_t triangles) {
+  constexpr std::size_t kMostBands = 30'000 / kBand;  // see snapped()
+  bands_.reserve(triangles);
+  first_.reserve(kMostBands + 2);
+  triangles_.reserve(2 * triangles);
+}
+
 void TriangleBins::sort(const TriangleList& list, Rect region) {
   const int last_band = (region.y1 - 1) / kBand;
   first_.assign(static_cast<std::size_t>(last_band) + 2, 0);

@@ -180,6 +180,9 @@ struct TriangleList {
 /// The triangles of a list by the bands that they touch, in the order of the list.
 class TriangleBins {
  public:
+  /// Allocates nothing later for lists of at most this length, if triangles touch two bands in the
+  /// mean at most.
+  void reserve(std::size_t triangles);
   /// Sorts the triangles that are drawn and may touch `region`, which must not reach above or left
   /// of the image.
   void sort(const TriangleList& list, Rect region);

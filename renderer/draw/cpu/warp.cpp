@@ -59,6 +59,15 @@ void fetch_band(RasterTarget& target, Rect from, Rect band, const FrameBuffer& i
 
 }  // namespace
 
+Warper::Warper() {
+  constexpr std::size_t kTriangles = 2 * 16'384;
+  cells_.corners.reserve(kTriangles);
+  cells_.triangles.reserve(kTriangles);
+  bins_.reserve(kTriangles);
+  areas_.reserve(kTriangles);
+  ids_.reserve(kTriangles);
+}
+
 void Warper::warp(const WarpGrid& grid, Rect from, Rect region, const FrameBuffer& in,
                   RasterTarget& target, FrameBuffer& out) {
   cells_.set(grid, from);
