@@ -6,7 +6,7 @@
 namespace handcast::renderer::cpu {
 namespace {
 
-constexpr std::int64_t kAwake_ns = 100'000;  ///< how long a helper looks for a task
+constexpr std::int64_t kAwake_ns = 1'000'000;  ///< how long a helper looks for a task
 
 constexpr std::uint64_t next_of(std::uint64_t state) { return state & 0xffff; }
 constexpr std::uint64_t parts_of(std::uint64_t state) { return state >> 16 & 0xffff; }
@@ -69,9 +69,10 @@ void Crew::help(int worker) {
     roused_.wait(seen);
     seen = roused_.load();
     if (ends_.load()) return;
-    for (const std::int64_t until_ns = now_ns() + kAwake_ns; now_ns() < until_ns; pause())
-      while (do_one(worker)) {
-      }
+    bool is_done = false;
+    for (const std::int64_t until_ns = now_ns() + kAwake_ns; !is_done && now_ns() < until_ns;
+         pause())
+      while (do_one(worker)) is_done = true;
   }
 }
 

@@ -20,7 +20,7 @@ class Crew {
 
   /// The threads that work on a task, the caller's included.
   int size() const { return static_cast<int>(helpers_.size()) + 1; }
-  /// Wakes the helpers for a task that comes within 0.1 ms: waking one takes up to 60 us.
+  /// Wakes the helpers for one task that comes within 1 ms: waking one takes up to 60 us.
   void rouse();
   /// Calls do_part(part, worker) once for each part in [0, parts), in any order and on any of the
   /// threads; `worker` is in [0, size()), and no two calls at a time have the same. Returns when
