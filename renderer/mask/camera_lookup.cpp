@@ -124,7 +124,9 @@ CameraLookup::CameraLookup(const calib::Calibration& calibration, bool smooth)
       columns_((width_ + kStep - 1) / kStep + 1),
       rows_((height_ + kStep - 1) / kStep + 1),
       smooth_(smooth),
-      calibration_(calibration) {
+      calibration_(calibration),
+      upper_(static_cast<std::size_t>(columns_)),
+      lower_(upper_.size()) {
   const bool is_coaxial = calibration.projector.parallax == glm::dvec3(0);
   table_.reserve(static_cast<std::size_t>(columns_) * rows_);
   for (int row = 0; row < rows_; ++row)
@@ -138,7 +140,7 @@ CameraLookup::CameraLookup(const calib::Calibration& calibration, bool smooth)
 
 /// Image positions, at the exposure, of the block corners in row `row` of the table, from column
 /// `first` on.
-void CameraLookup::find_corners(int row, int first, std::vector<glm::ivec2>& corners,
+void CameraLookup::find_corners(int row, int first, std::span<glm::ivec2> corners,
                                 const Similarity& then_from_now,
                                 std::span<const float> nearness) const {
   std::size_t entry = static_cast<std::size_t>(row) * columns_ + first;
@@ -152,20 +154,22 @@ void CameraLookup::find_corners(int row, int first, std::vector<glm::ivec2>& cor
 }
 
 void CameraLookup::resample(View<const std::uint8_t> mask, Rect region, View<std::uint8_t> out,
-                            const Similarity& then_from_now,
-                            std::span<const float> nearness) const {
+                            const Similarity& then_from_now, std::span<const float> nearness) {
   if (slopes_.empty()) nearness = {};
   region = region.within(width_, height_);
   if (region.empty()) return;
   const int first = region.x0 / kStep, last = (region.x1 - 1) / kStep;
-  std::vector<glm::ivec2> upper(static_cast<std::size_t>(last - first) + 2), lower(upper.size());
-  find_corners(region.y0 / kStep, first, lower, then_from_now, nearness);
+  const auto find_lower = [&](int row) {
+    const std::span corners(lower_.data(), static_cast<std::size_t>(last - first) + 2);
+    find_corners(row, first, corners, then_from_now, nearness);
+  };
+  find_lower(region.y0 / kStep);
   for (int y = region.y0 / kStep * kStep; y < region.y1; y += kStep) {
-    upper.swap(lower);
-    find_corners(y / kStep + 1, first, lower, then_from_now, nearness);
+    upper_.swap(lower_);
+    find_lower(y / kStep + 1);
     for (int column = first; column <= last; ++column) {
       const std::size_t i = static_cast<std::size_t>(column - first);
-      const Block block{column * kStep, y, upper[i], upper[i + 1], lower[i], lower[i + 1]};
+      const Block block{column * kStep, y, upper_[i], upper_[i + 1], lower_[i], lower_[i + 1]};
       const Rect whole{block.x, y, block.x + kStep, y + kStep};
       const Rect part = whole.overlap(region);
       if (part.width() == kStep && part.height() == kStep && resample_uniform(mask, block, out))

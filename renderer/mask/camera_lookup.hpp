@@ -12,7 +12,7 @@
 namespace handcast::renderer {
 
 /// The map from projector pixels to camera image pixels (homography, parallax and lens distortion),
-/// as a table that is computed once per calibration.
+/// as a table that is computed once per calibration. One thread.
 class CameraLookup {
  public:
   /// Projector px between two entries of the table.
@@ -33,7 +33,7 @@ class CameraLookup {
   /// `nearness`: of the lit surface, by entry of the table (NearnessGrid::points()); empty: it lies
   /// on the calibration's plane.
   void resample(View<const std::uint8_t> mask, Rect region, View<std::uint8_t> out,
-                const Similarity& then_from_now = {}, std::span<const float> nearness = {}) const;
+                const Similarity& then_from_now = {}, std::span<const float> nearness = {});
   /// Bounds of `camera_region` (image px) in projector px, not clipped to the screen, for a surface
   /// of this nearness.
   Rect to_projector(Rect camera_region, float nearness = 0) const;
@@ -45,7 +45,7 @@ class CameraLookup {
     int x, y;
     glm::ivec2 top_left, top_right, bottom_left, bottom_right;
   };
-  void find_corners(int row, int first, std::vector<glm::ivec2>& corners,
+  void find_corners(int row, int first, std::span<glm::ivec2> corners,
                     const Similarity& then_from_now, std::span<const float> nearness) const;
   bool resample_uniform(View<const std::uint8_t> mask, const Block& block,
                         View<std::uint8_t> out) const;
@@ -58,6 +58,7 @@ class CameraLookup {
   /// Image positions of every 8th projector pixel of every 8th row; bilinear in between.
   std::vector<glm::vec2> table_;
   std::vector<glm::vec2> slopes_;  ///< of these positions, by the nearness; empty if coaxial
+  std::vector<glm::ivec2> upper_, lower_;  ///< corners of a row of blocks, while it is resampled
 };
 
 }  // namespace handcast::renderer

@@ -45,14 +45,19 @@ HandMask::HandMask(const config::Mask& settings, const calib::Calibration& calib
       lookup_(calibration, smooth),
       nearness_{NearnessGrid(lookup_.columns(), lookup_.rows(), CameraLookup::kStep),
                 NearnessGrid(lookup_.columns(), lookup_.rows(), CameraLookup::kStep)},
-      projector_mask_(calibration.projector.width_px, calibration.projector.height_px) {}
+      projector_mask_(calibration.projector.width_px, calibration.projector.height_px) {
+  const auto reserve = [](auto&... all) { (all.reserve(msg::kMaxHands), ...); };
+  reserve(sought_, owned_hints_, hints_, found_);
+  set_size(calibration.camera.width_px, calibration.camera.height_px);
+}
 
-void HandMask::clear_camera_mask(int width, int height) {
-  if (camera_mask_.width() != width || camera_mask_.height() != height) {
-    camera_mask_ = Image<std::uint8_t>(width, height);
-    written_ = {};
-  }
-  fill_rect(camera_mask_, written_, 0);
+/// Allocates what has the size of the camera's image, if it changes, and forgets the hands then.
+void HandMask::set_size(int width, int height) {
+  if (camera_mask_.width() == width && camera_mask_.height() == height) return;
+  camera_mask_ = Image<std::uint8_t>(width, height);
+  written_ = {};
+  for (Memory& memory : memories_) memory = {camera_mask_, {}, {}};
+  finder_.reserve(width, height);
 }
 
 /// True if `hands` are where they were sought in this image before, so that the masks are the same.
@@ -82,19 +87,20 @@ void HandMask::find(const TimedImage& camera, std::span<const Sought> hands) {
   }
   image_ = camera;
   sought_.assign(hands.begin(), hands.end());
-  clear_camera_mask(camera.view.width, camera.view.height);
+  set_size(camera.view.width, camera.view.height);
+  fill_rect(camera_mask_, written_, 0);
   owned_hints_.clear();
   hints_.clear();
-  std::vector<std::optional<std::size_t>> hint_of(hands.size());
+  std::array<std::optional<std::size_t>, msg::kMaxHands> hint_of;
   for (std::size_t h = 0; h < hands.size(); ++h) {
     if (!hands[h].then) continue;
     auto hint = make_hint(calibration_, settings_, *hands[h].then, hands[h].offset_px,
                           hands[h].has_landmarks);
     if (!hint) continue;
     hint_of[h] = owned_hints_.size();
-    owned_hints_.push_back(std::move(*hint));
+    owned_hints_.push_back(*hint);
   }
-  for (const OwnedHint& owned : owned_hints_) hints_.push_back(owned.hint);
+  for (const OwnedHint& owned : owned_hints_) hints_.push_back(owned.hint());
   written_ = finder_.find(camera.view, hints_, camera_mask_.view());
   found_.clear();
   for (std::size_t h = 0; h < hands.size(); ++h) {
@@ -122,11 +128,6 @@ bool HandMask::is_shown(const Rect& found, const Rect& before,
 
 void HandMask::remember(const Sought& hand, const Rect& found) {
   Memory& memory = memory_of(hand.side);
-  if (memory.mask.width() != camera_mask_.width() ||
-      memory.mask.height() != camera_mask_.height()) {
-    memory.mask = Image<std::uint8_t>(camera_mask_.width(), camera_mask_.height());
-    memory.found = {};
-  }
   fill_rect(memory.mask, memory.found, 0);
   memory.found = found.within(camera_mask_.width(), camera_mask_.height());
   for (int y = memory.found.y0; y < memory.found.y1; ++y)
@@ -170,20 +171,20 @@ Rect HandMask::region_of(std::size_t h, const Moved& hand, const Rect& image_reg
 
 Rect HandMask::advance(std::span<const Moved> hands) {
   Rect all;
-  std::vector<Rect> regions;
-  std::vector<Similarity> moves;
+  std::array<Rect, msg::kMaxHands> regions;
+  std::array<Similarity, msg::kMaxHands> moves;
   for (std::size_t h = 0; h < hands.size(); ++h) {
     const Found& found = found_[h];
-    moves.push_back(found.is_shown ? since_exposure(found, hands[h]) : since_seen(found, hands[h]));
+    moves[h] = found.is_shown ? since_exposure(found, hands[h]) : since_seen(found, hands[h]);
     const Rect bounds = found.is_shown ? found.bounds : memory_of(found.side).found;
     const bool dark = bounds.empty() || hands[h].presence <= 0;
-    const Rect moved = dark ? Rect{} : moved_back(bounds, moves.back()).grown(kMargin_px);
-    regions.push_back(region_of(h, hands[h], moved));
-    all = all.joined(regions.back());
+    const Rect moved = dark ? Rect{} : moved_back(bounds, moves[h]).grown(kMargin_px);
+    regions[h] = region_of(h, hands[h], moved);
+    all = all.joined(regions[h]);
   }
-  if (regions.size() > 1) fill_rect(projector_mask_, all, 0);
+  if (hands.size() > 1) fill_rect(projector_mask_, all, 0);
   for (const bool shown : {false, true})
-    for (std::size_t h = 0; h < regions.size(); ++h) {
+    for (std::size_t h = 0; h < hands.size(); ++h) {
       if (found_[h].is_shown != shown) continue;
       const GreyView mask = shown ? camera_mask_.view() : memory_of(found_[h].side).mask.view();
       lookup_.resample(mask, regions[h], projector_mask_.view(), moves[h], nearness_[h].points());

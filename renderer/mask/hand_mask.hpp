@@ -23,7 +23,7 @@ using msg::Side;
 /// Step "mask" and its state: the masks of the hands, found in the camera's image where the hands
 /// are expected, and moved to where the hands will be at the target time. A hand that the image no
 /// longer shows keeps the mask it had when it was last shown, moved with it. See
-/// `docs/method.md#mask`. One thread.
+/// `docs/method.md#mask`. At most msg::kMaxHands hands. One thread.
 class HandMask {
  public:
   /// A hand to be found in an image.
@@ -98,7 +98,7 @@ class HandMask {
   Similarity since_exposure(const Found& found, const Moved& hand) const;
   Similarity since_seen(const Found& found, const Moved& hand) const;
   Rect region_of(std::size_t h, const Moved& hand, const Rect& image_region);
-  void clear_camera_mask(int width, int height);
+  void set_size(int width, int height);
   bool is_shown(const Rect& found, const Rect& before, std::span<const glm::vec2> seeds_px) const;
   void remember(const Sought& hand, const Rect& found);
   Memory& memory_of(Side side) { return memories_[static_cast<std::size_t>(side)]; }

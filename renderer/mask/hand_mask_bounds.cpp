@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kBand = 8;  ///< rows that share their spans
 
+std::size_t bands_of(int height) { return static_cast<std::size_t>((height + kBand - 1) / kBand); }
+
 struct Extent {
   float x0 = 1e9f, x1 = -1e9f;
   void take(float from, float to) {
@@ -34,19 +36,23 @@ void cut_side(glm::vec2 from, glm::vec2 to, float y, Extent& extent) {
 
 }  // namespace
 
-void RowSpans::reset(Rect region, std::size_t most) {
+void RowSpans::reserve(int height) {
+  counts_.reserve(bands_of(height));
+  spans_.reserve(bands_of(height) * kMost);
+}
+
+void RowSpans::reset(Rect region) {
   region_ = region;
-  most_ = most;
-  counts_.assign(static_cast<std::size_t>((region.height() + kBand - 1) / kBand), 0);
-  spans_.resize(counts_.size() * most);
+  counts_.assign(bands_of(region.height()), 0);
+  spans_.resize(counts_.size() * kMost);
 }
 
 void RowSpans::add(int band, float x0, float x1) {
   const RowSpan span{std::max(region_.x0, static_cast<int>(x0)),
                      std::min(region_.x1, static_cast<int>(x1) + 1)};
   int& count = counts_[band];
-  if (span.x0 < span.x1 && static_cast<std::size_t>(count) < most_)
-    spans_[band * most_ + count++] = span;
+  if (span.x0 < span.x1 && static_cast<std::size_t>(count) < kMost)
+    spans_[band * kMost + count++] = span;
 }
 
 void RowSpans::add(const Capsule& capsule, float margin_px) {
@@ -83,7 +89,7 @@ void RowSpans::add(Rect rect) {
 
 void RowSpans::settle() {
   for (std::size_t band = 0; band < counts_.size(); ++band) {
-    RowSpan* const spans = &spans_[band * most_];
+    RowSpan* const spans = &spans_[band * kMost];
     int& count = counts_[band];
     for (int i = 1; i < count; ++i)
       for (int j = i; j > 0 && spans[j].x0 < spans[j - 1].x0; --j)
@@ -101,7 +107,7 @@ void RowSpans::settle() {
 
 std::span<const RowSpan> RowSpans::row(int y) const {
   const int band = (y - region_.y0) / kBand;
-  return {&spans_[band * most_], static_cast<std::size_t>(counts_[band])};
+  return {&spans_[band * kMost], static_cast<std::size_t>(counts_[band])};
 }
 
 namespace {
@@ -131,10 +137,17 @@ HANDCAST_CLONES int count_lit(const std::uint8_t* pixels, int count) {
 
 }  // namespace
 
-void HandMaskBounds::reset(Rect region, std::size_t shapes) {
+void HandMaskBounds::reserve(int width, int height) {
+  sure_.reserve(height);
+  most_.reserve(height);
+  wrists_.reserve(msg::kMaxHands);
+  around_.reserve(width, height);
+}
+
+void HandMaskBounds::reset(Rect region) {
   region_ = region;
-  sure_.reset(region, shapes);
-  most_.reset(region, shapes);
+  sure_.reset(region);
+  most_.reset(region);
   wrists_.clear();
 }
 

@@ -26,6 +26,7 @@ constexpr Bone kBones[] = {
     {0, 17, 22, 14}, {17, 18, 8.8f, 7.8f},  {18, 19, 7.8f, 6.9f}, {19, 20, 6.9f, 6.1f},  // little
     {2, 5, 11, 11},  {5, 9, 11, 11},        {9, 13, 11, 11},      {13, 17, 11, 11}};
 constexpr float kWrist_mm = 28;
+static_assert(std::size(kBones) + 1 == kCapsules);
 
 /// The image position of a point in tracker space, moved by `offset_px` before the lens distortion.
 glm::dvec2 image_of(const calib::Calibration& calibration, const glm::dvec3& tracker_m,
@@ -54,10 +55,10 @@ std::array<float, kLandmarks> scale_of(const calib::CameraModel& camera,
   return px_per_mm;
 }
 
-std::vector<Capsule> capsules_of(const std::vector<glm::vec2>& landmarks_px, glm::vec2 arm_px,
-                                 const std::array<float, kLandmarks>& px_per_mm) {
-  std::vector<Capsule> capsules;
-  capsules.reserve(std::size(kBones) + 1);
+std::array<Capsule, kCapsules> capsules_of(const LandmarkPoints& landmarks_px, glm::vec2 arm_px,
+                                           const std::array<float, kLandmarks>& px_per_mm) {
+  std::array<Capsule, kCapsules> capsules;
+  auto capsule = capsules.begin();
   for (const auto& [from, to, from_mm, to_mm] : kBones) {
     const glm::vec2 along = landmarks_px[to] - landmarks_px[from];
     const float radius_px = to_mm * px_per_mm[to], length_px = glm::length(along);
@@ -65,13 +66,13 @@ std::vector<Capsule> capsules_of(const std::vector<glm::vec2>& landmarks_px, glm
     const bool tip = to % 4 == 0 && length_px > 0;
     const glm::vec2 end_px =
         tip ? landmarks_px[to] - along * (std::min(1.0f, radius_px / length_px)) : landmarks_px[to];
-    capsules.push_back({landmarks_px[from], end_px, from_mm * px_per_mm[from], radius_px});
+    *capsule++ = {landmarks_px[from], end_px, from_mm * px_per_mm[from], radius_px};
   }
-  capsules.push_back({landmarks_px[0], arm_px, kWrist_mm * px_per_mm[0], kWrist_mm * px_per_mm[0]});
+  *capsule = {landmarks_px[0], arm_px, kWrist_mm * px_per_mm[0], kWrist_mm * px_per_mm[0]};
   return capsules;
 }
 
-Rect bounds_of(const std::vector<Capsule>& capsules, float margin_px) {
+Rect bounds_of(std::span<const Capsule> capsules, float margin_px) {
   glm::vec2 low(1e6f), high(-1e6f);
   for (const auto& [from, to, from_radius, to_radius] : capsules) {
     low = glm::min(low, glm::min(from - from_radius, to - to_radius));
@@ -93,7 +94,7 @@ std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
   for (int i = 0; i < kLandmarks; ++i) {
     const glm::dvec2 px = glm::dvec2(then.landmarks[i]) + glm::dvec2(offset_px[i]);
     in_reach |= is_in_reach(calibration.camera, px);
-    owned.seeds_px.push_back(calibration.camera.distort(px));
+    owned.seeds_px[i] = calibration.camera.distort(px);
   }
   if (!in_reach) return std::nullopt;
 
@@ -110,12 +111,11 @@ std::optional<OwnedHint> make_hint(const calib::Calibration& calibration,
   if (glm::length(along) < 1e-3) along = {0, 1};
 
   owned.capsules = capsules_of(owned.seeds_px, end, scale_of(calibration.camera, then.depths_m));
-  const float sure_px = has_landmarks ? kSure_px : kTrackerSure_px,
-              most_px = has_landmarks ? kMost_px : kTrackerMost_px;
-  owned.hint = {
-      bounds_of(owned.capsules, most_px), end, glm::normalize(along), {}, {}, sure_px, most_px};
-  owned.hint.inside_px = owned.seeds_px;
-  owned.hint.capsules = owned.capsules;
+  owned.sure_px = has_landmarks ? kSure_px : kTrackerSure_px;
+  owned.most_px = has_landmarks ? kMost_px : kTrackerMost_px;
+  owned.region = bounds_of(owned.capsules, owned.most_px);
+  owned.wrist_px = end;
+  owned.to_elbow = glm::normalize(along);
   return owned;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <optional>
-#include <vector>
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
@@ -10,11 +10,21 @@
 
 namespace handcast::renderer {
 
-/// A hint with the seeds and the capsules that it refers to.
+/// A HandHint with its own seeds and capsules.
 struct OwnedHint {
-  HandHint hint;                    ///< refers to the members below
-  std::vector<glm::vec2> seeds_px;  ///< HandHint::inside_px
-  std::vector<Capsule> capsules;    ///< HandHint::capsules
+  /// As in HandHint.
+  /// @{
+  Rect region;
+  glm::vec2 wrist_px{0}, to_elbow{0};
+  float sure_px = 0, most_px = 0;
+  std::array<Capsule, kCapsules> capsules{};
+  /// @}
+  LandmarkPoints seeds_px{};  ///< HandHint::inside_px
+
+  /// Refers to this object.
+  HandHint hint() const {
+    return {region, wrist_px, to_elbow, seeds_px, capsules, sure_px, most_px};
+  }
 };
 
 /// Where a hand is expected in an image: `then`, its pose at the exposure, moved by `offset_px`

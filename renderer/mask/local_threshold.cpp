@@ -2,6 +2,7 @@
 #include "renderer/mask/local_threshold.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "renderer/base/clones.hpp"
@@ -10,6 +11,7 @@ namespace handcast::renderer {
 namespace {
 
 constexpr int kCell_px = 16;
+constexpr int kAtOnce = 64;  ///< cells of a row of pixels that are added up together
 constexpr int kRowStep = 8;  ///< one row of eight is measured, and shares its thresholds
 /// Position between the dark and the bright mean. Nearer to the middle of the edge than the global
 /// threshold can be, which must not lose skin that is darker than the mean.
@@ -51,21 +53,35 @@ HANDCAST_CLONES void ramp(const float* centres, int cells, std::uint8_t* out) {
 
 }  // namespace
 
+void LocalThreshold::reserve(int width, int height) {
+  const auto cells_in = [](int px) {
+    return static_cast<std::size_t>(px + kCell_px - 1) / kCell_px;
+  };
+  const std::size_t columns = cells_in(width), cells = columns * cells_in(height);
+  cells_.reserve(cells);
+  thresholds_.reserve(cells);
+  line_.reserve(columns + 2);
+  row_.reserve((columns + 1) * kCell_px);
+}
+
 void LocalThreshold::sample(GreyView image, int threshold) {
   cells_.assign(index(0, lines_), {});
   const int whole = std::min(columns_, (image.width - region_.x0) / kCell_px);
-  std::vector<Sums> sums(static_cast<std::size_t>(columns_));
-  for (int y = region_.y0; y < region_.y1; y += kRowStep) {
-    add_up(image.row(y) + region_.x0, static_cast<std::uint8_t>(threshold), whole, sums.data());
-    Cell* cell = &cells_[index(0, (y - region_.y0) / kCell_px)];
-    for (int c = 0; c < whole; ++c) {
-      const auto [all, bright, count] = sums[static_cast<std::size_t>(c)];
-      cell[c].dark += static_cast<float>(all - bright);
-      cell[c].bright += static_cast<float>(bright);
-      cell[c].dark_count += static_cast<float>(kCell_px - count);
-      cell[c].bright_count += static_cast<float>(count);
+  std::array<Sums, kAtOnce> sums;
+  for (int y = region_.y0; y < region_.y1; y += kRowStep)
+    for (int first = 0; first < whole; first += kAtOnce) {
+      const int cells = std::min(kAtOnce, whole - first);
+      add_up(image.row(y) + region_.x0 + first * kCell_px, static_cast<std::uint8_t>(threshold),
+             cells, sums.data());
+      Cell* cell = &cells_[index(first, (y - region_.y0) / kCell_px)];
+      for (int c = 0; c < cells; ++c) {
+        const auto [all, bright, count] = sums[static_cast<std::size_t>(c)];
+        cell[c].dark += static_cast<float>(all - bright);
+        cell[c].bright += static_cast<float>(bright);
+        cell[c].dark_count += static_cast<float>(kCell_px - count);
+        cell[c].bright_count += static_cast<float>(count);
+      }
     }
-  }
 }
 
 /// Adds its neighbours in one direction to each cell: `count` cells, `step` apart.

@@ -15,6 +15,8 @@ namespace handcast::renderer {
 /// centres of cells get an interpolated value. One thread.
 class LocalThreshold {
  public:
+  /// Allocates the memory for images of this size in pixels.
+  void reserve(int width, int height);
   /// Measures `region`, which must be inside the image. With pixels on one side of `threshold` only
   /// it holds everywhere.
   void measure(GreyView image, const Rect& region, int threshold);

@@ -53,6 +53,7 @@ Span positive(Span within, float at_zero, float slope) {
 /// Joints of any hand in this area keep their surroundings.
 class Forearm {
  public:
+  Forearm() = default;
   Forearm(const HandHint& hint, std::span<const HandHint> all)
       : wrist_(hint.wrist_px), out_(hint.to_elbow) {
     for (const glm::vec2& joint : hint.inside_px)
@@ -61,8 +62,8 @@ class Forearm {
     for (const HandHint& other : all)
       for (const glm::vec2& joint : other.inside_px)
         if (beyond(joint) > kFingerReach_px / 2 &&
-            std::abs(across(joint)) < half_width_ + kFingerReach_px)
-          kept_.push_back(joint);
+            std::abs(across(joint)) < half_width_ + kFingerReach_px && kept_count_ < kept_.size())
+          kept_[kept_count_++] = joint;
   }
 
   /// Removes the forearm from a run. Returns false if nothing is left of the run.
@@ -72,7 +73,7 @@ class Forearm {
     Span span = positive({run.x0, run.x1}, beyond(row_start), out_.x);
     span = positive(span, half_width_ - across(row_start), out_.y);
     span = positive(span, half_width_ + across(row_start), -out_.y);
-    if (kept_.empty()) {
+    if (kept_count_ == 0) {
       clear(mask, run.y, span.x0, span.x1);
       return span.x1 - span.x0 < run.x1 - run.x0;
     }
@@ -85,13 +86,14 @@ class Forearm {
   float beyond(glm::vec2 v) const { return glm::dot(v - wrist_, out_); }
   float across(glm::vec2 v) const { return (v.y - wrist_.y) * out_.x - (v.x - wrist_.x) * out_.y; }
   bool near_kept(glm::vec2 v) const {
-    return std::any_of(kept_.begin(), kept_.end(),
+    return std::any_of(kept_.begin(), kept_.begin() + kept_count_,
                        [&](glm::vec2 joint) { return glm::distance(v, joint) < kFingerReach_px; });
   }
 
-  glm::vec2 wrist_, out_;
+  glm::vec2 wrist_{0}, out_{0};
   float half_width_ = 0;
-  std::vector<glm::vec2> kept_;
+  std::array<glm::vec2, msg::kMaxHands * kLandmarks> kept_{};
+  std::size_t kept_count_ = 0;
 };
 
 void claim_parts(RunMap& runs, const HandHint& hint, int index) {
@@ -110,7 +112,15 @@ void claim_parts(RunMap& runs, const HandHint& hint, int index) {
 
 }  // namespace
 
+void MaskFinder::reserve(int width, int height) {
+  local_.reserve(width, height);
+  reach_.reserve(width, height);
+  runs_.reserve(width, height);
+  rest_.reserve(width, height);
+}
+
 Rect MaskFinder::find(GreyView image, std::span<const HandHint> hints, View<std::uint8_t> mask) {
+  hints = hints.first(std::min(hand_bounds_.size(), hints.size()));
   Rect region;
   for (const HandHint& hint : hints)
     region = region.joined(hint.region.within(image.width, image.height));
@@ -123,11 +133,11 @@ Rect MaskFinder::find(GreyView image, std::span<const HandHint> hints, View<std:
   reach_.confine(mask);
   runs_.build(mask, region);
 
-  const int count = static_cast<int>(std::min(kMostHints, hints.size()));
-  std::vector<Forearm> forearms;
+  const int count = static_cast<int>(hints.size());
+  std::array<Forearm, msg::kMaxHands> forearms;
   for (int h = 0; h < count; ++h) {
     claim_parts(runs_, hints[h], h);
-    forearms.emplace_back(hints[h], hints);
+    forearms[h] = Forearm(hints[h], hints);
   }
   for (const RunMap::Run& run : runs_.runs()) {
     const std::uint8_t owners = runs_.owners(run);
@@ -172,9 +182,7 @@ void MaskFinder::close_holes(View<std::uint8_t> mask) {
 }
 
 void MaskFinder::bound(std::span<const HandHint> hints, Rect region) {
-  std::size_t most = 0;
-  for (const HandHint& hint : hints) most += std::max<std::size_t>(1, hint.capsules.size());
-  reach_.reset(region, most);
+  reach_.reset(region);
   for (const HandHint& hint : hints)
     if (hint.capsules.empty())
       reach_.add(hint.region);

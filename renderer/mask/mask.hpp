@@ -9,6 +9,7 @@
 
 #include "config/sections/cascade.hpp"
 #include "renderer/base/image.hpp"
+#include "renderer/base/landmark_points.hpp"
 #include "renderer/mask/local_threshold.hpp"
 #include "renderer/mask/run_map.hpp"
 
@@ -26,6 +27,9 @@ struct Capsule {
   /// @}
 };
 
+/// Capsules of a hand: its bones, and the wrist.
+inline constexpr std::size_t kCapsules = 25;
+
 /// Pixels [x0, x1) of a row.
 struct RowSpan {
   /// First column, and one past the last.
@@ -38,8 +42,13 @@ struct RowSpan {
 /// the spans at its middle.
 class RowSpans {
  public:
-  /// Removes all shapes. `most`: spans per row, at most; more are ignored.
-  void reset(Rect region, std::size_t most);
+  /// Spans per row, at most; more are ignored.
+  static constexpr std::size_t kMost = msg::kMaxHands * kCapsules;
+
+  /// Allocates the memory for regions of this height in pixels.
+  void reserve(int height);
+  /// Removes all shapes.
+  void reset(Rect region);
   /// Adds the capsule of a bone, grown by `margin_px`.
   void add(const Capsule& capsule, float margin_px);
   /// Adds a rectangle.
@@ -54,8 +63,7 @@ class RowSpans {
   void add(int band, float x0, float x1);
 
   Rect region_;
-  std::size_t most_ = 0;
-  std::vector<RowSpan> spans_;  ///< `most_` entries per group of rows
+  std::vector<RowSpan> spans_;  ///< kMost entries per group of rows
   std::vector<int> counts_;     ///< entries in use, per group of rows
 };
 
@@ -74,9 +82,10 @@ class HandMaskBounds {
     glm::vec2 to_elbow;  ///< unit, at right angles to the line
   };
 
-  /// Removes all hands. `region`: image px. `shapes`: the number of shapes that will be added, at
-  /// most.
-  void reset(Rect region, std::size_t shapes);
+  /// Allocates the memory for images of this size in pixels.
+  void reserve(int width, int height);
+  /// Removes all hands. `region`: image px.
+  void reset(Rect region);
   /// Adds a hand by its capsules, which grow by `sure_px` for the inner and by `most_px` for the
   /// outer bound.
   void add(std::span<const Capsule> capsules, float sure_px, float most_px, const Wrist& wrist);
@@ -110,7 +119,7 @@ struct HandHint {
   Rect region;         ///< bounds of the hand, with a margin for errors of the prediction
   glm::vec2 wrist_px;  ///< where the hand ends on the forearm, config::Mask::forearm_mm included
   glm::vec2 to_elbow;  ///< unit, from `wrist_px` along the forearm
-  /// Points on the hand (its joints): the seeds of its connected part.
+  /// Points on the hand (its joints): the seeds of its connected part. At most kLandmarks.
   std::span<const glm::vec2> inside_px;
   /// Contains the whole hand. Empty: the hand may fill its region.
   std::span<const Capsule> capsules{};
@@ -129,15 +138,17 @@ class MaskFinder {
   /// Copies the settings.
   explicit MaskFinder(const config::Mask& settings) : settings_(settings) {}
 
+  /// Allocates the memory for images of this size in pixels.
+  void reserve(int width, int height);
   /// Writes the mask of all hands: 255 hand, 0 not. `mask` has the size of the image; only the
   /// returned rectangle is written, the joined regions of the hints, clipped to the image. A hint
-  /// without a seed on a bright part takes the largest bright part in its region. At most eight
-  /// hints are used.
+  /// without a seed on a bright part takes the largest bright part in its region. At most
+  /// msg::kMaxHands hints are used.
   Rect find(GreyView image, std::span<const HandHint> hints, View<std::uint8_t> mask);
 
   /// Bounds of the hand of one hint in the last mask; empty if there is none.
   Rect hand_bounds(std::size_t hint) const {
-    return hint < kMostHints ? hand_bounds_[hint] : Rect{};
+    return hint < hand_bounds_.size() ? hand_bounds_[hint] : Rect{};
   }
   /// The threshold of the last image. A chosen one is the middle of those of the pixels.
   int threshold() const { return threshold_; }
@@ -147,8 +158,6 @@ class MaskFinder {
   }
 
  private:
-  static constexpr std::size_t kMostHints = 8;
-
   void choose(GreyView image, Rect region);
   void binarise(GreyView image, Rect region, View<std::uint8_t> mask);
   void bound(std::span<const HandHint> hints, Rect region);
@@ -160,7 +169,7 @@ class MaskFinder {
   LocalThreshold local_;
   HandMaskBounds reach_;
   RunMap runs_, rest_;  ///< the bright and the dark parts
-  std::array<Rect, kMostHints> hand_bounds_{};
+  std::array<Rect, msg::kMaxHands> hand_bounds_{};
 };
 
 }  // namespace handcast::renderer

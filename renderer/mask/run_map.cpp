@@ -24,6 +24,12 @@ int skip(const std::uint8_t* row, int x, int end, std::uint8_t value) {
 
 }  // namespace
 
+void RunMap::reserve(int width, int height) {
+  const auto rows = static_cast<std::size_t>(height);
+  runs_.reserve(rows * (static_cast<std::size_t>(width) + 1) / 2);  // every second pixel is lit
+  row_first_.reserve(rows + 1);
+}
+
 void RunMap::build(View<const std::uint8_t> image, Rect region) {
   begin(region);
   for (int y = region.y0; y < region.y1; ++y) {

@@ -23,6 +23,8 @@ class RunMap {
     std::uint8_t owners;  ///< bit h: claimed by owner h; valid in the root
   };
 
+  /// Allocates the memory for any image of this size in pixels.
+  void reserve(int width, int height);
   /// Reads `region` of `image` (0 or 255).
   void build(View<const std::uint8_t> image, Rect region);
   /// The same in steps: begin(), then for each row of the region, from the top: read() for each

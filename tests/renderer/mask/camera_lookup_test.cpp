@@ -186,7 +186,7 @@ TEST_P(Lookup, TheShortCutForUniformBlocksChangesNothing) {
 
 TEST_P(Lookup, ASmoothMaskIsInterpolatedBetweenTheCameraPixels) {
   draw_checks(mask);
-  const CameraLookup smooth(calibration, true);
+  CameraLookup smooth(calibration, true);
   for (const Similarity& move :
        {Similarity(), similarity(1, 0, {17.3f, -9.8f}), similarity(0.7f, 0.3f, {90, -40})}) {
     smooth.resample(mask.view(), screen, out.view(), move);
@@ -216,7 +216,7 @@ TEST_P(Lookup, ASmoothMaskIsInterpolatedBetweenTheCameraPixels) {
 TEST_P(Lookup, TheShortCutsOfASmoothMaskChangeNothing) {
   draw_checks(mask);
   mask.at(300, 250) ^= 255;
-  const CameraLookup smooth(calibration, true);
+  CameraLookup smooth(calibration, true);
   Image<std::uint8_t> by_pixels(out.width(), out.height(), 77);
   for (const Similarity& move :
        {Similarity(), similarity(1, 0, {17.3f, -9.8f}), similarity(1.9f, -1, {-200, 300})}) {
@@ -251,7 +251,7 @@ TEST(CameraLookup, WhereTheCameraSeesNothingThereIsNoHand) {
   calib::Calibration calibration = calib::reference_rig();
   for (int row = 0; row < 3; ++row)
     calibration.projector.from_camera[0][row] *= 0.5;  // the camera sees half of the screen
-  const CameraLookup lookup(calibration);
+  CameraLookup lookup(calibration);
   Image<std::uint8_t> mask(calibration.camera.width_px, calibration.camera.height_px, 255),
       out(1024, 768, 99);
   lookup.resample(mask.view(), {0, 0, 1024, 768}, out.view());

@@ -47,7 +47,7 @@ TEST(ALookupBesideTheCamera, FindsTheMaskOfASurfaceOffThePlane) {
       -(calibration.projector.from_camera * (calibration.camera.matrix() * glm::dvec3(0.15, 0, 0)));
   constexpr double kDepth_m = 0.66;
   constexpr int kEdge_px = 360;
-  const CameraLookup lookup(calibration);
+  CameraLookup lookup(calibration);
   Image<std::uint8_t> mask(calibration.camera.width_px, calibration.camera.height_px);
   for (int y = 0; y < mask.height(); ++y)
     std::fill(mask.row(y) + kEdge_px, mask.row(y) + mask.width(), std::uint8_t{255});

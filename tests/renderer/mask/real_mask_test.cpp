@@ -138,7 +138,7 @@ std::optional<Found> find_in(const RealOutline& outline, bool landmarks) {
   step.find(camera, std::span(&hand, 1));
   const auto found = step.silhouette(camera);
   const auto truth = truth_of(outline);
-  const auto hint = make_hint(rig, {}, *hand.then, hand.offset_px, landmarks)->hint;
+  const auto hint = *make_hint(rig, {}, *hand.then, hand.offset_px, landmarks);
   const auto score = score_outline(found.mask, truth.view(), [&](glm::vec2 at) {
     return glm::dot(at - hint.wrist_px, hint.to_elbow) < -kCut_px;
   });

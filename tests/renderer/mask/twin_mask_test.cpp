@@ -86,7 +86,7 @@ OutlineScore worst_score(const config::TwinImage& image) {
           .side = Side::left, .then = project(rig, pose_of(joints)), .has_landmarks = true};
       const TimedImage camera{picture.view(), 0};
       step.find(camera, std::span(&hand, 1));
-      const auto hint = make_hint(rig, {}, *hand.then, {}, true)->hint;
+      const auto hint = *make_hint(rig, {}, *hand.then, {}, true);
       const auto score = score_outline(
           step.silhouette(camera).mask, silhouette_of(*twin, joints).view(),
           [&](glm::vec2 at) { return glm::dot(at - hint.wrist_px, hint.to_elbow) < -kTwinCut_px; });

@@ -139,7 +139,7 @@ std::optional<ForearmCut> cut_of(const World& world, const renderer::HandMask::S
                                          hand.has_landmarks);
   if (!owned) return std::nullopt;
   constexpr float kSkin_px = 24;  // from the joints to the edge of the drawn hand
-  ForearmCut cut{owned->hint.wrist_px, owned->hint.to_elbow};
+  ForearmCut cut{owned->wrist_px, owned->to_elbow};
   for (const auto joint : owned->seeds_px)
     cut.half_width = std::max(cut.half_width, across(cut, joint) + kSkin_px);
   return cut;
