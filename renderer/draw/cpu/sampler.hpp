@@ -80,7 +80,10 @@ struct Lookup {
   [[gnu::always_inline]] void set(int i, float s, float t, std::int32_t stride,
                                   std::int32_t fraction) {
     const auto column = static_cast<std::int32_t>(s), row = static_cast<std::int32_t>(t);
-    index[i] = (row >> 8) * stride + (column >> 8);
+    // Unsigned: a lane that shows nothing may hold any number.
+    index[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(row >> 8) *
+                                             static_cast<std::uint32_t>(stride) +
+                                         static_cast<std::uint32_t>(column >> 8));
     right[i] = static_cast<std::uint32_t>(column & fraction);
     down[i] = static_cast<std::uint32_t>(row & fraction);
   }
