@@ -243,7 +243,7 @@ hardware() {
 }
 document hardware
 hardware >"$work/results.csv"
-"$table" hardware "$work/results.csv" "$work/document.md" "a command"
+table hardware "$work/results.csv" "$work/document.md" "a command"
 says '| method | camera | projector 60 Hz, 50 ms | projector 120 Hz, 16 ms | projector 240 Hz, 8 ms |' || fail "the projectors are wrong"
 says '| handcast | 525 Hz | 5.5 (5.0, 6.0); -1.5 | 4.5 (4.0, 5.0); -1.5 | 3.5 (3.0, 4.0); -1.5 |' || fail "a pair at natural speed is wrong"
 says '| paper | 30 Hz | 13.5 (13.0, 14.0); -1.5 |' || fail "a pair at three times the speed is wrong"
@@ -251,9 +251,9 @@ says '| projector 60 Hz, 50 ms → 120 Hz, 16 ms | 1.00 (1.00, 1.00) | 2.00 (2.0
 says '| camera 30 → 525 Hz | 1.00 (1.00, 1.00) | 2.00 (2.00, 2.00) | 1.00 (1.00, 1.00) | 2.00 (2.00, 2.00) |' || fail "a camera's step is wrong"
 says 'Seeds 1-2; motions coin. Made by `a command`' || fail "seeds, motions or command are missing"
 hardware | sed '5s/,$/,no hand/' >"$work/results.csv"
-! "$table" hardware "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a failed run of a pair is not refused"
+! table hardware "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a failed run of a pair is not refused"
 hardware | sed '5d' >"$work/results.csv"
-! "$table" hardware "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a missing run of a pair is not refused"
+! table hardware "$work/results.csv" "$work/document.md" 2>/dev/null || fail "a missing run of a pair is not refused"
 
 # Other parts: a weaker lamp costs 2 mm.
 document hardware_parts
@@ -267,10 +267,10 @@ document hardware_parts
     done
   done
 } >"$work/results.csv"
-"$table" hardware_parts "$work/results.csv" "$work/document.md"
+table hardware_parts "$work/results.csv" "$work/document.md"
 says '| a weaker lamp: exposure 8 ms instead of 4 ms | 7.5 (7.0, 8.0) | 2.00 (2.00, 2.00) |' || fail "a part is wrong"
 grep -v usual "$work/results.csv" | sed 's/runs=12/runs=10/' >"$work/less.csv"
-! "$table" hardware_parts "$work/less.csv" "$work/document.md" 2>/dev/null || fail "parts without what they are compared with are not refused"
+! table hardware_parts "$work/less.csv" "$work/document.md" 2>/dev/null || fail "parts without what they are compared with are not refused"
 
 has_place() { grep -q "<!-- $2: begin -->" "$root/$1" || fail "$1 has no place for $2"; }
 for part in comparison unseen levers fidelity causes motions fast two_hands jitter first_seconds no_tracker; do
