@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "ipc/base/log.hpp"
 #include "ipc/base/prefault.hpp"
 #include "renderer/draw/choose/open_painter.hpp"
 #include "services/projector/brightness.hpp"
@@ -15,6 +16,13 @@ using service::must;
 static void run_projector(service::Context& context) {
   const auto& rig = context.rig();
   const auto& calibration = context.calibration();
+  const int threads = rig.projector.painter_threads;
+  const auto cores = rig.projector.process.cores.size();
+  if (cores > 0 && threads > static_cast<int>(cores))
+    log::warning(
+        "projector.painter_threads: {} threads share {} of projector.process.cores; give them a "
+        "core each",
+        threads, cores);
   // An output that only one process may use is opened last, and has no share group.
   std::unique_ptr<projector::Projector> projector;
   if (!service::is_exclusive(rig.projector.backend, projector::projector_backends()))
@@ -23,8 +31,7 @@ static void run_projector(service::Context& context) {
   const auto pipeline = must(renderer::Pipeline::create(
       rig.cascade, rig.content, rig.hand, calibration, {},
       renderer::open_painter(rig.projector.painter, calibration.projector.width_px,
-                             calibration.projector.height_px, shares,
-                             rig.projector.painter_threads)));
+                             calibration.projector.height_px, shares, threads)));
   pipeline->show_surface(true);  // an observer may come at any time
   prefault_memory();             // before the turn of a standby, which must be short
   context.stand_by();

@@ -8,6 +8,9 @@ namespace {
 
 constexpr std::int64_t kAwake_ns = 1'000'000;  ///< how long a helper looks for a task
 
+constexpr std::uint32_t number_of(std::uint64_t state) {
+  return static_cast<std::uint32_t>(state >> 32);
+}
 constexpr std::uint64_t next_of(std::uint64_t state) { return state & 0xffff; }
 constexpr std::uint64_t parts_of(std::uint64_t state) { return state >> 16 & 0xffff; }
 
@@ -25,13 +28,14 @@ Crew::Crew(int helpers) {
 
 Crew::~Crew() {
   ends_.store(true);
-  rouse();
+  roused_.fetch_add(1);
+  roused_.notify_all();
   for (std::thread& helper : helpers_) helper.join();
 }
 
 void Crew::rouse() {
   if (helpers_.empty()) return;
-  roused_.fetch_add(1);
+  roused_.store(number_of(state_.load(std::memory_order_relaxed)) + 1);
   roused_.notify_all();
 }
 
@@ -44,8 +48,9 @@ void Crew::run(int parts, Call call, void* task) {
   call_ = call;
   task_ = task;
   done_.store(0, std::memory_order_relaxed);
-  const std::uint64_t number = (state_.load(std::memory_order_relaxed) >> 32) + 1;
-  state_.store(number << 32 | static_cast<std::uint64_t>(parts) << 16, std::memory_order_release);
+  const std::uint32_t number = number_of(state_.load(std::memory_order_relaxed)) + 1;
+  state_.store(std::uint64_t{number} << 32 | static_cast<std::uint64_t>(parts) << 16,
+               std::memory_order_release);
   while (do_one(0)) {
   }
   while (done_.load(std::memory_order_acquire) < parts) pause();
@@ -63,16 +68,22 @@ bool Crew::do_one(int worker) {
   return true;
 }
 
+/// True if all parts of a task have been taken, or a later one has begun.
+bool Crew::is_over(std::uint32_t task) const {
+  const std::uint64_t state = state_.load(std::memory_order_acquire);
+  const auto later = static_cast<std::int32_t>(number_of(state) - task);
+  return later > 0 || (later == 0 && next_of(state) >= parts_of(state));
+}
+
 void Crew::help(int worker) {
-  std::uint32_t seen = 0;
+  std::uint32_t task = 0;
   while (true) {
-    roused_.wait(seen);
-    seen = roused_.load();
+    roused_.wait(task);
+    task = roused_.load();
     if (ends_.load()) return;
-    bool is_done = false;
-    for (const std::int64_t until_ns = now_ns() + kAwake_ns; !is_done && now_ns() < until_ns;
-         pause())
-      while (do_one(worker)) is_done = true;
+    const std::int64_t until_ns = now_ns() + kAwake_ns;
+    while (!is_over(task) && now_ns() < until_ns)
+      if (!do_one(worker)) pause();
   }
 }
 

@@ -37,6 +37,7 @@ class Crew {
   void run(int parts, Call call, void* task);
   void help(int worker);
   bool do_one(int worker);
+  bool is_over(std::uint32_t task) const;
 
   Call call_ = nullptr;
   void* task_ = nullptr;
@@ -44,7 +45,7 @@ class Crew {
   /// part.
   std::atomic<std::uint64_t> state_{0};
   std::atomic<int> done_{0};              ///< parts of the task
-  std::atomic<std::uint32_t> roused_{0};  ///< changes when the helpers shall wake
+  std::atomic<std::uint32_t> roused_{0};  ///< number of the task for which the helpers shall wake
   std::atomic<bool> ends_{false};
   std::vector<std::thread> helpers_;
 };
