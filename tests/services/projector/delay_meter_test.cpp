@@ -11,8 +11,8 @@ namespace {
 
 TEST(DelayMeter, TimeOffTheProcessorIsMeasured) {
   const DelayMeter meter;
-  sleep_until_ns(now_ns() + 5'000'000);
-  EXPECT_GE(meter.delay().off_cpu_us, 4900u);
+  sleep_until_ns(now_ns() + 20'000'000);
+  EXPECT_GE(meter.delay().off_cpu_us, 15'000u);  // waking up takes time on the processor, too
 }
 
 TEST(DelayMeter, PageFaultsAreCounted) {
