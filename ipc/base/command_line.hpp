@@ -38,6 +38,7 @@ class CommandLine {
   /// Declares a number in a range, which is shown, as is a default in the range.
   template <class Number>
   requires std::is_arithmetic_v<Number>
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): they are moved
   void add(std::string usage, Number& number, std::string help, Range range) {
     const auto set = [&number](double value) { number = static_cast<Number>(value); };
     add_number(std::move(usage), set, std::move(help),

@@ -59,6 +59,7 @@ std::size_t prefault_memory() {
   touch_stack();
   std::size_t bytes = 0;
   for (const auto& [begin, end, advice] : mappings())
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): /proc has numbers
     if (madvise(reinterpret_cast<void*>(begin), end - begin, advice) == 0) bytes += end - begin;
   return bytes;
 }
