@@ -54,15 +54,15 @@ struct RowCounts {
   bool is_spilt = false;  ///< there is light outside the hand
 };
 
-/// Sorts the pixels [x0, x1) of a row of `width` pixels into the regions. The two scratch planes
-/// may be written beside them.
-HANDCAST_CLONES RowCounts sort_row(const Sorting row, int x0, int x1, int width) {
+/// Sorts the pixels [x0, x1) of a row into the regions. The two scratch planes may be written to
+/// the left of them: the last vector ends where the pixels do.
+HANDCAST_CLONES RowCounts sort_row(const Sorting row, int x0, int x1) {
   RowSums sums;
-  if (width < kVector) {
+  if (x1 < kVector) {
     sort_pixels(row, 0, x1, x0, sums);
   } else {
     for (int x = x0; x < x1; x += kVector) {
-      const int first = std::max(0, std::min(x, x1 - kVector));
+      const int first = std::min(x, x1 - kVector);
       sort_pixels(row, first, kVector, x - first, sums);
     }
   }
@@ -133,7 +133,7 @@ FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, Frame
   for (int y = region.y0; y < region.y1; ++y) {
     const Sorting row{mask.row(y), frame.surface.row(y), frame.colour.row(y), lit_.row(y),
                       unlit_.row(y)};
-    const RowCounts found = sort_row(row, region.x0, region.x1, mask.width);
+    const RowCounts found = sort_row(row, region.x0, region.x1);
     const Span span = frame.lit[y].within(region.x0, region.x1);
     if (found.is_spilt && !span.empty()) darken_spilt(row, span.x0, span.x1);
     counts.lit += found.lit;

@@ -407,6 +407,18 @@ TEST_P(PainterContract, BeyondTheReachItStaysDarkAndBeforeThatItFades) {
   EXPECT_EQ(counts.dark, (kWidth - 50 - 19) * kHeight);
 }
 
+TEST_P(PainterContract, AFillCountsThePixelsOfItsRegionAlone) {
+  Shape shape;
+  shape.rectangle({-60, -60}, {kWidth + 60, kHeight + 60});
+  const auto everywhere = mask_of(kWidth, kHeight, kWhole);
+  for (const Rect region : {Rect{0, 0, 30, 9}, {5, 3, 31, 20}, {3, 0, kWidth, 5}, kWhole}) {
+    draw(*painter_, shape, kWhole);
+    const FillCounts counts = fill(everywhere, region);
+    EXPECT_EQ(counts.lit, region.width() * region.height()) << region.x0 << ' ' << region.x1;
+    EXPECT_EQ(counts.filled + counts.dark, 0);
+  }
+}
+
 TEST_P(PainterContract, AHandAtTheImagesBorderIsFilledUpToIt) {
   Shape shape;
   shape.rectangle({-60, -60}, {9.5f, 9.5f});
