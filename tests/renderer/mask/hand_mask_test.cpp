@@ -52,6 +52,13 @@ TEST_F(SearchedTwice, AHandThatHardlyMovedHasTheMaskThatItHas) {
   }
 }
 
+TEST_F(SearchedTwice, TheImageIsNotReadAgain) {
+  found_in(mask_, timed(image_), here_);
+  const TimedImage same = timed(image_);
+  std::ranges::fill(image_.pixels(), 0);
+  EXPECT_GT(std::ranges::count(found_in(mask_, same, here_).pixels(), 255), 1000);
+}
+
 TEST_F(SearchedTwice, AHandThatIsSoughtElsewhereIsSearchedAnew) {
   found_in(mask_, timed(image_), sought_at(rig_, {0.4f, 0, 0}, {}));
   EXPECT_TRUE(std::ranges::equal(found_in(mask_, timed(image_), here_).pixels(),
