@@ -166,14 +166,21 @@ class SteadyFrames : public ::testing::TestWithParam<config::CorrectMethod> {
   void SetUp() override {
     if (!test::are_costs_counted()) GTEST_SKIP() << "sanitizers allocate memory of their own";
   }
-  /// Counts in all parts but the first, in which the hands rest.
+  /// Counts in all parts but the first, in which the hands rest. The system may take a page back,
+  /// but hardly in three scenes in succession; a first touch comes in each.
   void expect_steady(int hands) {
-    Scene scene(cascade(GetParam(), config::FillMethod::reflect), hands);
-    scene.run(kPart_ns);
-    scene.forget();
-    scene.run(static_cast<int>(Part::count) * kPart_ns);
-    EXPECT_EQ(scene.most_hands(), hands);
-    expect_nothing(scene);
+    for (int left = 3; left > 0; --left) {
+      Scene scene(cascade(GetParam(), config::FillMethod::reflect), hands);
+      scene.run(kPart_ns);
+      scene.forget();
+      scene.run(static_cast<int>(Part::count) * kPart_ns);
+      const bool has_faults = std::ranges::any_of(
+          scene.costs(), [](const auto& stage) { return stage.second.faults != 0; });
+      if (has_faults && left > 1) continue;
+      EXPECT_EQ(scene.most_hands(), hands);
+      expect_nothing(scene);
+      return;
+    }
   }
 };
 INSTANTIATE_TEST_SUITE_P(Methods, SteadyFrames,
