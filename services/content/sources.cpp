@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
+#include "services/content/source.hpp"
+
+namespace handcast::content {
+
+Result<std::unique_ptr<Source>> open_isf(const Opening&);
+Result<std::unique_ptr<Source>> open_shadertoy(const Opening&);
+Result<std::unique_ptr<Source>> open_look(const Opening&);
+Result<std::unique_ptr<Source>> open_picture(const Opening&);
+Result<std::unique_ptr<Source>> open_film(const Opening&);
+Result<std::unique_ptr<Source>> open_capture(const Opening&);
+Result<std::unique_ptr<Source>> open_text(const Opening&);
+Result<std::unique_ptr<Source>> open_pattern(const Opening&);
+
+static constexpr SourceKind kKinds[] = {
+    {"look", "One of handcast's own looks, by its name.", open_look},
+    {"isf", "A shader in the Interactive Shader Format, version 2.", open_isf},
+    {"shadertoy", "A shader by the conventions of Shadertoy.", open_shadertoy},
+    {"picture", "A PNG or JPEG file.", open_picture},
+    {"film", "A film, or a stream by its address.", open_film},
+    {"capture", "A video device: a camera, or another program by v4l2loopback.", open_capture},
+    {"text", "Text in any script.", open_text},
+    {"pattern", "A pattern of the hand's own: atlas, checker, skeleton, white.", open_pattern},
+};
+
+std::span<const SourceKind> source_kinds() { return kKinds; }
+
+Result<std::unique_ptr<Source>> open_source(const Opening& opening) {
+  const auto found = std::ranges::find(kKinds, opening.element.kind, &SourceKind::name);
+  if (found == std::end(kKinds)) {
+    std::vector<std::string_view> names;
+    for (const auto& kind : kKinds) names.push_back(kind.name);
+    return fail(Errc::bad_config, fmt::format("there is no kind of content {}; there are: {}",
+                                              quote(opening.element.kind), join(names, ", ")));
+  }
+  auto source = found->open(opening);
+  if (!source) return source;
+  for (const auto& [name, value] : opening.element.parameters)
+    if (auto set = (*source)->set(name, value); !set)
+      return fail_in(opening.element.what, set.error());
+  return source;
+}
+
+}  // namespace handcast::content
