@@ -12,6 +12,8 @@
 namespace handcast::content {
 namespace {
 
+using Kind = Parameter::Kind;
+
 std::optional<double> number_in(std::string_view text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -48,40 +50,39 @@ std::vector<double> colour_in(std::string_view text) {
   return colour;
 }
 
-std::size_t count_of(Parameter::Kind kind) {
-  if (kind == Parameter::Kind::point) return 2;
-  return kind == Parameter::Kind::colour ? 4 : 1;
+std::size_t count_of(Kind kind) {
+  if (kind == Kind::point) return 2;
+  return kind == Kind::colour ? 4 : 1;
 }
 
 std::vector<double> parse(const Parameter& parameter, std::string_view text) {
-  using enum Parameter::Kind;
-  if (parameter.kind == colour && text.starts_with('#')) return colour_in(text);
-  if (parameter.kind == flag || parameter.kind == event) {
+  const Kind kind = parameter.kind;
+  if (kind == Kind::colour && text.starts_with('#')) return colour_in(text);
+  if (kind == Kind::flag || kind == Kind::event) {
     if (text == "true" || text == "on" || text == "yes") return {1};
     if (text == "false" || text == "off" || text == "no") return {0};
   }
-  if (parameter.kind == choice)
+  if (kind == Kind::choice)
     if (const auto found = std::ranges::find(parameter.choices, text);
         found != parameter.choices.end())
       return {parameter.values[static_cast<std::size_t>(found - parameter.choices.begin())]};
   auto numbers = numbers_in(text);
-  if (parameter.kind == colour && numbers.size() == 3) numbers.push_back(1);
-  if (numbers.size() != count_of(parameter.kind)) return {};
+  if (kind == Kind::colour && numbers.size() == 3) numbers.push_back(1);
+  if (numbers.size() != count_of(kind)) return {};
   return numbers;
 }
 
 /// "a number from 0 to 1".
 std::string wanted_by(const Parameter& parameter) {
-  using enum Parameter::Kind;
   switch (parameter.kind) {
-    case flag:
-    case event:
+    case Kind::flag:
+    case Kind::event:
       return "true or false";
-    case choice:
+    case Kind::choice:
       return "one of " + join(parameter.choices, ", ");
-    case point:
+    case Kind::point:
       return "two numbers, e.g. 0.5,0.5";
-    case colour:
+    case Kind::colour:
       return "a colour, e.g. #ff8800";
     default:
       break;
