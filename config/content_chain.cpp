@@ -7,6 +7,7 @@
 #include <cctype>
 #include <optional>
 
+#include "ipc/base/home.hpp"
 #include "ipc/base/quote.hpp"
 
 namespace handcast::config {
@@ -77,7 +78,12 @@ Result<ContentElement> parse_element(std::string_view text) {
 }
 
 std::string print_element(const ContentElement& element) {
-  std::string text = fmt::format("{}:{}", element.kind, element.what);
+  std::string text = element.what;
+  const auto named = parse_element(element.what);
+  const bool says_it = named && named->kind == element.kind && named->what == element.what &&
+                       named->parameters.empty();
+  const std::string_view kind = element.kind == "pattern" ? "builtin" : element.kind;
+  if (!says_it) text = fmt::format("{}:{}", kind, element.what);
   for (const auto& [name, value] : element.parameters) {
     const bool is_quoted = value.empty() || value.find(' ') != value.npos;
     text += is_quoted ? fmt::format(" {}=\"{}\"", name, value) : fmt::format(" {}={}", name, value);
@@ -107,11 +113,27 @@ std::string print_content(const ContentChain& chain) {
   return text;
 }
 
+Result<std::string> resolve_content(std::string_view text, const std::filesystem::path& folder) {
+  auto chain = parse_content(text);
+  if (!chain) return tl::make_unexpected(chain.error());
+  for (auto& element : *chain) {
+    if (!is_content_file(element)) continue;
+    const auto whole = expand_home(element.what);
+    if (!whole) return tl::make_unexpected(whole.error());
+    if (auto fault = fault_of_path(*whole, folder); !fault.empty())
+      return fail(Errc::bad_config, std::move(fault));
+    element.what = (folder / *whole).lexically_normal().string();
+  }
+  return print_content(*chain);
+}
+
 std::string_view content_kind_of(std::string_view file) {
   if (file.starts_with("/dev/video")) return "capture";
+  if (file.starts_with("file:")) return "picture";
   if (file.find("://") != file.npos) return "film";
+  const bool is_path = file.find('/') != file.npos;
   const auto dot = file.rfind('.');
-  if (dot == file.npos || dot < file.rfind('/') + 1) return {};
+  if (dot == file.npos || dot < file.rfind('/') + 1) return is_path ? "picture" : "";
   std::string end(file.substr(dot + 1));
   std::ranges::transform(end, end.begin(), [](unsigned char c) { return std::tolower(c); });
   const auto is_one_of = [&](auto... words) { return ((end == words) || ...); };
@@ -120,7 +142,7 @@ std::string_view content_kind_of(std::string_view file) {
   if (is_one_of("glsl", "frag", "shadertoy")) return "shadertoy";
   if (is_one_of("mp4", "m4v", "mov", "avi", "mkv", "webm", "mpg", "mpeg", "gif", "ts"))
     return "film";
-  return {};
+  return is_path ? "picture" : "";
 }
 
 bool is_content_file(const ContentElement& element) {

@@ -30,11 +30,15 @@ using ContentChain = std::vector<ContentElement>;
 /// Reads it. Errors (bad_config), each a sentence: it is empty, an element is, a quote is not
 /// closed.
 Result<ContentChain> parse_content(std::string_view text);
-/// Writes it, with all kinds, so that parse_content() reads the same.
+/// Writes it in the shortest way, so that parse_content() reads the same.
 std::string print_content(const ContentChain& chain);
 
+/// The same chain with the paths of its files absolute: those that are relative start at `folder`,
+/// ~ is the home folder. Errors (bad_config): those of parse_content(), a path that cannot be one.
+Result<std::string> resolve_content(std::string_view text, const std::filesystem::path& folder);
+
 /// The kind of content in a file by the end of its name: picture, film, isf, shadertoy; "capture"
-/// for /dev/video0, "film" for an address ("rtsp://…"); "" if the end says nothing.
+/// for /dev/video0, "film" for an address ("rtsp://…"), "picture" for another path; "" for a name.
 std::string_view content_kind_of(std::string_view file);
 /// True if `what` of this kind is the path of a file.
 bool is_content_file(const ContentElement& element);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "config/content_chain.hpp"
 #include "config/measured.hpp"
 #include "config/settings/files.hpp"
 #include "config/settings/frozen_file.hpp"
@@ -39,22 +40,14 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};
 
-/// What is wrong with a path as it is written; "" if nothing is, if it is absolute, or if there is
-/// such a file.
-std::string fault_of_path(const std::string& path, const std::filesystem::path& folder) {
-  std::error_code unknown;
-  if (path.starts_with('/') || std::filesystem::exists(folder / path, unknown)) return {};
-  if (std::ranges::any_of(path, [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
-    return quote(path) +
-           " is not a path: in double quotes, \\n, \\t and the like are escapes; write single ones";
-  return odd_path(path);
-}
+bool is_content(std::string_view setting) { return setting.starts_with("content."); }
 
 /// Makes paths that are relative, or begin with ~, absolute. `where`: of the fault, "rig.toml" or
 /// "--set".
 void resolve_paths(const Listing& listing, const std::filesystem::path& folder,
                    std::string_view where, Faults& faults) {
   for (const auto path : kPaths) {
+    if (is_content(path)) continue;
     auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
     if (!is_path(path, text)) continue;
     auto whole = expand_home(text);
@@ -64,9 +57,21 @@ void resolve_paths(const Listing& listing, const std::filesystem::path& folder,
   }
 }
 
+/// Checks what is on the hands, and makes the paths in it absolute.
+void resolve_contents(const Listing& listing, const std::filesystem::path& folder,
+                      std::string_view where, Faults& faults) {
+  for (const std::string_view path : {"content.left", "content.right", "content.transition"}) {
+    auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
+    auto resolved = resolve_content(text, folder);
+    if (!resolved) faults.add(fmt::format("{}: {}: {}", where, path, resolved.error().what));
+    if (resolved) text = std::move(*resolved);
+  }
+}
+
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
   for (const auto* service :
-       {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector", "dlp", "observer"})
+       {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector", "dlp", "content",
+        "observer"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,
@@ -113,10 +118,14 @@ Result<Rig> parse_layers(std::span<const NamedText> layers,
     const auto document = parse_document(toml, file);
     if (!document) return tl::make_unexpected(document.error());
     apply_document(*document, file, listing, faults);
-    resolve_paths(listing, std::filesystem::absolute(file, gone).parent_path(), file, faults);
+    const auto folder = std::filesystem::absolute(file, gone).parent_path();
+    resolve_paths(listing, folder, file, faults);
+    resolve_contents(listing, folder, file, faults);
   }
   for (const auto& setting : settings) apply_assignment(setting, listing, faults);
-  resolve_paths(listing, std::filesystem::current_path(gone), "--set", faults);
+  const auto here = std::filesystem::current_path(gone);
+  resolve_paths(listing, here, "--set", faults);
+  resolve_contents(listing, here, "--set", faults);
   check_together(rig, layers.front().path, faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   return rig;
@@ -131,6 +140,10 @@ bool names_a_file(std::string_view setting) {
 bool is_path(std::string_view setting, std::string_view value) {
   if (!names_a_file(setting) || value.empty()) return false;
   if (setting == "twin.shape.mesh" && value.find_first_of("./") == value.npos) return false;
+  if (is_content(setting)) {
+    const auto chain = parse_content(value);
+    return chain && is_still(*chain) && is_content_file(chain->front());
+  }
   return !value.starts_with("builtin:") && !value.starts_with(kFrozen);
 }
 
@@ -165,6 +178,7 @@ static const Process* find_process(const Rig& rig, std::string_view service) {
   if (service == "landmarks2") return &rig.landmarks2.process;
   if (service == "projector") return &rig.projector.process;
   if (service == "dlp") return &rig.dlp.process;
+  if (service == "content") return &rig.content.process;
   if (service == "observer") return &rig.observer.process;
   return nullptr;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/sections/cascade.hpp"
+#include "config/sections/content.hpp"
 #include "config/sections/dlp.hpp"
 #include "config/sections/projector.hpp"
 #include "config/sections/sensors.hpp"
@@ -58,7 +59,7 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("landmarks2", rig.landmarks2, "The landmark detector of the second camera.");
   visitor.section("projector", rig.projector, "The projector.");
   visitor.section("dlp", rig.dlp, "The projector's own controller.");
-  visitor.section("content", rig.content, "The pictures on the hands.");
+  visitor.section("content", rig.content, "What is on the hands.");
   visitor.section("hand", rig.hand, "The model of the hand that is drawn.");
   visitor.section("cascade", rig.cascade, "The steps from sensor data to light.");
   visitor.section("twin", rig.twin,

@@ -155,31 +155,6 @@ void describe(Visitor& visitor, Projector& projector) {
   visitor.section("process", projector.process, "The process of the service.");
 }
 
-/// [content]
-struct Content {
-  std::string left = "builtin:atlas";
-  std::string right = "builtin:atlas";
-  double shading = 0.0;
-  bool smooth = true;
-};
-
-template <class Visitor>
-void describe(Visitor& visitor, Content& content) {
-  visitor.field(
-      "left", content.left,
-      "The picture on the left hand: a PNG or JPEG file in the layout that `handcast template` "
-      "writes, or "
-      "builtin:atlas, builtin:checker, builtin:skeleton, builtin:white.");
-  visitor.field("right", content.right, "The same for the right hand.");
-  visitor.field(
-      "shading", content.shading, between(0, 1),
-      "Strength of the shading by a light that shines along the camera's axis. 0: no shading.");
-  visitor.field(
-      "smooth", content.smooth,
-      "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "
-      "in each frame, but fine lines break up and edges have steps.");
-}
-
 /// [hand]
 struct Hand {
   std::string left;

@@ -5,6 +5,7 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdlib>
@@ -65,6 +66,15 @@ std::string odd_path(const std::string& path) {
         "/: \"/home/you/a.png\"",
         quote(path));
   return {};
+}
+
+std::string fault_of_path(const std::string& path, const std::filesystem::path& folder) {
+  std::error_code unknown;
+  if (path.starts_with('/') || std::filesystem::exists(folder / path, unknown)) return {};
+  if (std::ranges::any_of(path, [](char c) { return static_cast<unsigned char>(c) < 0x20; }))
+    return quote(path) +
+           " is not a path: in double quotes, \\n, \\t and the like are escapes; write single ones";
+  return odd_path(path);
 }
 
 }  // namespace handcast

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <filesystem>
 #include <string>
 
 #include "ipc/base/result.hpp"
@@ -14,5 +15,8 @@ Result<std::string> expand_home(const std::string& path);
 /// What is wrong with the writing of a path that was meant for a shell, a file manager or Windows:
 /// "$HOME/a.png", "file:///a.png", "C:\a.png". A sentence with the remedy; "" if nothing is.
 std::string odd_path(const std::string& path);
+/// What is wrong with a path, seen from a folder, as it is written; "" if nothing is, if it is
+/// absolute, or if there is such a file.
+std::string fault_of_path(const std::string& path, const std::filesystem::path& folder);
 
 }  // namespace handcast

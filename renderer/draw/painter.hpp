@@ -21,16 +21,19 @@
 namespace handcast::renderer {
 
 /// One hand to be drawn: topology from the mesh, everything else per vertex. Borrowed for the call
-/// of draw(), the texture until the last fill() of the drawing.
+/// of draw(), the picture until the last fill() of the drawing.
 struct DrawnHand {
   const HandMesh* mesh = nullptr;          ///< triangles, texture coordinates and charts
-  const MipChain* texture = nullptr;       ///< nullptr: white
+  MipView picture;                         ///< without texels: white
   std::span<const glm::vec2> position_px;  ///< projector px
   std::span<const float> depth_m;          ///< distance along the camera's axis; nearer wins
   std::span<const float> light;            ///< factor of the levels, 0..1; empty: 1 everywhere
-  /// Number of the contents of `mesh` and `texture`, see new_revision(): as long as it is the same,
-  /// a back end may draw with a copy that it made before. 0: the contents may have changed.
-  std::uint64_t revision = 0;
+  /// Numbers of the contents of `mesh` and `picture`, see new_revision(): as long as one is the
+  /// same, a back end may draw with a copy that it made before. 0: the contents may have changed.
+  /// @{
+  std::uint64_t mesh_revision = 0;
+  std::uint64_t picture_revision = 0;
+  /// @}
 };
 
 /// A number that no DrawnHand had before. Any thread.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/content_chain.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/msg/projection.hpp"
 #include "renderer/content/textures.hpp"
@@ -20,6 +21,13 @@ config::Filter filter_of(const config::Cascade& settings) {
   config::Filter filter = settings.filter;
   if (registration_of(settings).method != config::RegisterMethod::none) filter.blend_ms = 0;
   return filter;
+}
+
+/// What is painted until the content service says more: the content itself if it is one picture, or
+/// white.
+std::string still_of(const std::string& content) {
+  const auto chain = config::parse_content(content);
+  return chain && config::is_still(*chain) ? content : "builtin:white";
 }
 
 }  // namespace
@@ -57,7 +65,7 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
   const auto& model = is_left ? hand.left : hand.right;
   auto mesh = load_hand_or_default(model, side);
   if (!mesh) return tl::make_unexpected(mesh.error());
-  const auto& what = is_left ? content.left : content.right;
+  const auto what = still_of(is_left ? content.left : content.right);
   auto texture = load_content(what, *mesh);
   if (!texture) return tl::make_unexpected(texture.error());
   // Models of other people have layouts, and so proportions, of their own.
@@ -232,11 +240,12 @@ void HandPipeline::learn_outline(const HandFrame& frame, std::int64_t target_ns,
 DrawnHand HandPipeline::drawn(const Skinned& skinned,
                               std::span<const glm::vec2> position_px) const {
   return {&states_.shape.surface.mesh(),
-          &picture_,
+          worn_.texels != nullptr ? worn_ : picture_.view(),
           position_px,
           skinned.depth_m,
           skinned.light,
-          revision_};
+          mesh_revision_,
+          picture_revision_};
 }
 
 FrameHand HandPipeline::described(const HandFrame& frame) const {

@@ -6,6 +6,7 @@
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
+#include "config/sections/content.hpp"
 #include "config/sections/projector.hpp"
 #include "renderer/correct/finger_outline.hpp"
 #include "renderer/correct/foldover_repair.hpp"
@@ -143,6 +144,11 @@ class HandPipeline {
   /// borders of the palm. `mask`: of this hand, projector px.
   void learn_outline(const HandFrame& frame, std::int64_t target_ns, GreyView mask);
 
+  /// Sets the picture of the hand: see Pipeline::wear().
+  void wear(const MipView& picture) {
+    worn_ = picture;
+    picture_revision_ = new_revision();
+  }
   /// The hand for the painter, with its vertices at `position_px`. Borrows the mesh and the
   /// picture.
   DrawnHand drawn(const Skinned& skinned, std::span<const glm::vec2> position_px) const;
@@ -166,7 +172,8 @@ class HandPipeline {
   calib::Calibration calibration_;
   HandStates states_;
   MipChain picture_;
-  std::uint64_t revision_ = new_revision();  ///< of the mesh and the picture
+  MipView worn_;  ///< the picture of now; without texels, picture_
+  std::uint64_t mesh_revision_ = new_revision(), picture_revision_ = new_revision();
 };
 
 }  // namespace handcast::renderer

@@ -10,6 +10,7 @@
 
 #include "calib/calibration.hpp"
 #include "config/sections/cascade.hpp"
+#include "config/sections/content.hpp"
 #include "config/sections/projector.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
@@ -87,6 +88,12 @@ class Pipeline {
   void push(std::int64_t now_ns, const msg::HandPoses& reported);
   void push(std::int64_t now_ns, const msg::Landmarks& reported);
   /// @}
+
+  /// Paints this picture on a hand from now on, in place of that of the settings. Borrowed until
+  /// the next call for this hand; without texels: that of the settings again.
+  void wear(Side side, const MipView& picture) {
+    both_[static_cast<std::size_t>(side)].wear(picture);
+  }
 
   /// Draws the frame whose photons arrive at `target_ns`. `camera`: the newest image, or none; an
   /// image more than 50 ms later than `now_ns` is ignored. Without hands the frame is dark and its

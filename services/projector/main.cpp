@@ -38,7 +38,10 @@ static void run_projector(service::Context& context) {
   if (!projector) projector = must(projector::open_projector(rig, calibration));
   projector::Inputs inputs(must(context.reader<msg::CameraFrame>("camera.frames")),
                            must(context.reader<msg::HandPoses>("pose.hands")),
-                           must(context.reader<msg::Landmarks>("landmarks.hands")), calibration.id);
+                           must(context.reader<msg::Landmarks>("landmarks.hands")),
+                           {must(context.reader<msg::ContentPicture>("content.left")),
+                            must(context.reader<msg::ContentPicture>("content.right"))},
+                           calibration.id);
   projector::TestPictures test_pictures(must(context.reader<msg::TestPicture>(msg::kTestPictures)),
                                         calibration.projector.width_px,
                                         calibration.projector.height_px);
@@ -60,8 +63,8 @@ int main(int argc, char** argv) {
                        .summary = "Projects light onto the hands that the sensors see.",
                        .paced_by = "projector.rate_hz",
                        .publishes = {"projection.frames"},
-                       .subscribes = {"camera.frames", "pose.hands", "landmarks.hands",
-                                      std::string(msg::kTestPictures)},
+                       .subscribes = {"camera.frames", "pose.hands", "landmarks.hands", "content.left",
+                                      "content.right", std::string(msg::kTestPictures)},
                        .settings = {"projector", "content", "hand", "cascade"},
                        .backends = service::describe_rows(projector::projector_backends())},
                       argc, argv, run_projector, check_projector);

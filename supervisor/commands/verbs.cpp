@@ -25,6 +25,7 @@ constexpr std::array kVerbs{
     VerbEntry{"reload",
               "Applies a changed rig file: replaces only the services whose settings changed.",
               run_reload, Group::change},
+    VerbEntry{"content", "Shows or changes what is on the hands.", run_content, Group::change},
     VerbEntry{"top", "Watches rings and services in the terminal.", run_top, Group::look},
     VerbEntry{"preview", "Shows what a rig sees and casts, in a window or as a picture.", nullptr,
               Group::look},

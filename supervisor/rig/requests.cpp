@@ -13,6 +13,7 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
+#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
@@ -160,9 +161,10 @@ void give_status(LiveRig& rig, const Reply& reply) {
   reply(answer);
 }
 
-/// Only the ring that no service writes to may be changed by a tool; the others not even by
-/// accident.
-int access_to(std::string_view stream) { return stream == msg::kTestPictures ? O_RDWR : O_RDONLY; }
+/// Only rings that no service writes to may be changed by a tool; the others not even by accident.
+int access_to(std::string_view stream) {
+  return stream == msg::kTestPictures || stream == msg::kContentCommands ? O_RDWR : O_RDONLY;
+}
 
 void give_rings(const LiveRig& rig, const Reply& reply) {
   auto answer = success();

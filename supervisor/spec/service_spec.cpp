@@ -3,6 +3,8 @@
 
 #include "ipc/daemon/contract.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/content_command.hpp"
+#include "ipc/msg/content_picture.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/largest_images.hpp"
@@ -41,6 +43,17 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::TestPicture>(std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
                                      msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px,
                                                              msg::kLargestTestPictureHeight_px)),
+  };
+}
+
+/// The rings of the content service, for pictures of the size in the settings.
+std::vector<ipc::RingSpec> content_streams(std::size_t picture_bytes) {
+  using ipc::RingSpec;
+  return {
+      RingSpec::of<msg::ContentPicture>("content.left", kPictureSlots, kNewestOnly, picture_bytes),
+      RingSpec::of<msg::ContentPicture>("content.right", kPictureSlots, kNewestOnly, picture_bytes),
+      RingSpec::of<msg::ContentCommand>(std::string(msg::kContentCommands), 16, kWithHistory),
+      RingSpec::of<msg::ContentState>("content.state", 8, kNewestOnly),
   };
 }
 
@@ -89,6 +102,9 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
                       "",
                       {"camera", "pose", "landmarks"}});
   services.back().counts_sub_frames = rig.projector.packing != config::Packing::none;
+  services.push_back({"content", "content.left", "", 0});
+  services.back().message_bytes =
+      msg::ContentPicture::bytes(rig.content.width_px, rig.content.height_px);
   if (rig.dlp.backend != "none") {
     services.push_back({"dlp", "", rig.dlp.backend, 0});
     services.back().has_safe_state = true;
@@ -107,7 +123,11 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
 
 std::vector<ipc::RingSpec> rings_of(const std::vector<ServiceSpec>& services) {
   std::vector<ipc::RingSpec> rings = all_streams();
-  for (const auto& service : services) rings.push_back(marks_of(service));
+  for (const auto& service : services) {
+    rings.push_back(marks_of(service));
+    if (service.name == "content")
+      for (auto& ring : content_streams(service.message_bytes)) rings.push_back(std::move(ring));
+  }
   return rings;
 }
 

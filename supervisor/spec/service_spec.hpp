@@ -26,6 +26,8 @@ struct ServiceSpec {
   std::string fallback{};
   /// wanted_hz counts sub-frames, of which one drawing may light several.
   bool counts_sub_frames = false;
+  /// Size in bytes of the largest message of the rings that it publishes; 0: as its stream says.
+  std::size_t message_bytes = 0;
   /// Its program has the task --safe, for a device that must not stay as a dead service left it.
   bool has_safe_state = false;
   /// The service whose program it is an instance of: "camera" for camera2; "" for its own program.

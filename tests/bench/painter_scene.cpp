@@ -48,8 +48,8 @@ PainterScene::PainterScene(std::string its_name, int hands, const renderer::samp
   place_hand(Side::left, pose, hands == 1 ? 0 : -0.085f, calibration);
   if (hands > 1) place_hand(Side::right, pose, 0.085f, calibration);
   for (const auto& hand : hands_)
-    drawn.push_back({&hand->surface.mesh(), &picture_, hand->skinned.projected_px,
-                     hand->skinned.depth_m, hand->skinned.light, hand->revision});
+    drawn.push_back({&hand->surface.mesh(), picture_.view(), hand->skinned.projected_px,
+                     hand->skinned.depth_m, hand->skinned.light, hand->revision, hand->revision});
   make_mask(width_px, height_px);
   grid = renderer::test::bent_grid({0, 0, width_px, height_px});
 }

@@ -15,7 +15,7 @@ namespace handcast::bench {
 class PainterScene {
  public:
   /// One hand (the left one) or two, 0.73 m from the camera. The hand files must exist.
-  /// `smooth`: see MipChain.
+  /// `smooth`: see MipLayout.
   PainterScene(std::string name, int hands, const renderer::samples::Pose& pose, int width_px,
                int height_px, bool smooth = true);
 

@@ -41,7 +41,7 @@ class CpuPainter final : public Painter {
     shown_step_ = 0;
     filler_.forget();
     samplers_.clear();
-    for (const DrawnHand& hand : hands) samplers_.emplace_back(hand.texture, hand.mesh->uv);
+    for (const DrawnHand& hand : hands) samplers_.emplace_back(hand.picture, hand.mesh->uv);
     region = region.within(width_, height_);
     if (!region.empty()) drawer_.draw(hands, samplers_, region, crew_, targets_, frame_);
   }

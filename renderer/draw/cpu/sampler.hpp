@@ -22,16 +22,17 @@ constexpr std::uint32_t kOpaque = 0xff000000;
 /// A mip chain, borrowed. Places are those of TexelMap.
 class Sampler {
  public:
-  /// nullptr: white. `uv`: where it will be read, but for steps beyond.
-  explicit Sampler(const MipChain* picture, std::span<const glm::vec2> uv = {}) {
+  /// Without texels: white. `uv`: where it will be read, but for steps beyond.
+  explicit Sampler(MipView picture, std::span<const glm::vec2> uv = {}) {
     static const MipChain kWhite;
-    if (picture == nullptr) picture = &kWhite;
-    texels = picture->texels().data;
-    stride = picture->texels().stride;
-    fraction = picture->smooth() ? 255 : 0;
-    size = static_cast<float>(picture->width()) * static_cast<float>(picture->height());
-    levels_ = picture->levels();
-    for (int level = 0; level < levels_; ++level) maps_[level] = map_of(*picture, level);
+    if (picture.texels == nullptr) picture = kWhite.view();
+    const msg::MipLayout& layout = picture.layout;
+    texels = picture.texels;
+    stride = layout.stride();
+    fraction = layout.smooth ? 255 : 0;
+    size = static_cast<float>(layout.width) * static_cast<float>(layout.height);
+    levels_ = layout.levels();
+    for (int level = 0; level < levels_; ++level) maps_[level] = map_of(layout, level);
     bool is_inside = true;
     for (const glm::vec2 at : uv)
       is_inside &= (at.x >= 0) & (at.x <= 1) & (at.y >= 0) & (at.y <= 1);
@@ -50,16 +51,15 @@ class Sampler {
  private:
   /// The border of a chain is one texel wide. Smooth: the texel to the left of a place and above it
   /// is the first of the four that it is between; otherwise it is the nearest.
-  static TexelMap map_of(const MipChain& picture, int level) {
+  static TexelMap map_of(const msg::MipLayout& picture, int level) {
     constexpr float kOne = 256;  // of a texel
-    const float scale = std::ldexp(1.f, -level), border = picture.smooth() ? 0.5f : 1;
-    const auto first_row = static_cast<float>(
-        2 * level + 2 * (picture.padded_height() - (picture.padded_height() >> level)));
-    const glm::vec2 texels = kOne * scale * glm::vec2(picture.width(), picture.height());
+    const float scale = std::ldexp(1.f, -level), border = picture.smooth ? 0.5f : 1;
+    const auto first_row = static_cast<float>(picture.first_row(level) - 1);
+    const glm::vec2 texels = kOne * scale * glm::vec2(picture.width, picture.height);
     return {texels, kOne * glm::vec2(border, border + first_row), 1.f / texels};
   }
 
-  std::array<TexelMap, MipChain::kMostLevels> maps_;
+  std::array<TexelMap, msg::MipLayout::kMostLevels> maps_;
   int levels_;
 };
 

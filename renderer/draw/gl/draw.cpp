@@ -57,18 +57,18 @@ void Drawer::draw_hand(const HandAssets& assets, int index, cpu::Facing facing,
     gl.CullFace(facing == cpu::Facing::positive ? GL_BACK : GL_FRONT);
   }
   gl.ProgramUniform1ui(program_.name(), 1, surface_id(index, 0));
-  gl.ProgramUniform4i(program_.name(), 2, assets.picture.x, assets.picture.y, assets.picture.z,
-                      assets.picture.w);
-  gl.BindTextureUnit(0, assets.content.name());
-  gl.VertexArrayVertexBuffer(vertices_.name(), 0, assets.vertices.name(), 0,
-                             HandAssets::kVertexBytes);
+  const glm::ivec4 picture = assets.picture->place();
+  gl.ProgramUniform4i(program_.name(), 2, picture.x, picture.y, picture.z, picture.w);
+  gl.BindTextureUnit(0, assets.picture->texels.name());
+  gl.VertexArrayVertexBuffer(vertices_.name(), 0, assets.mesh->vertices.name(), 0,
+                             MeshCopy::kVertexBytes);
   gl.VertexArrayVertexBuffer(vertices_.name(), 1, ring_->buffer(), static_cast<GLintptr>(offset),
                              sizeof(Placed));
-  gl.VertexArrayElementBuffer(vertices_.name(), assets.triangles.name());
-  gl.DrawElements(GL_TRIANGLES, assets.index_count, GL_UNSIGNED_SHORT, nullptr);
+  gl.VertexArrayElementBuffer(vertices_.name(), assets.mesh->triangles.name());
+  gl.DrawElements(GL_TRIANGLES, assets.mesh->index_count, GL_UNSIGNED_SHORT, nullptr);
 }
 
-void Drawer::draw(std::span<const DrawnHand> hands, std::span<const HandAssets* const> assets,
+void Drawer::draw(std::span<const DrawnHand> hands, std::span<const HandAssets> assets,
                   const Rect& region, const Layers& out) {
   std::size_t vertices = 0;
   for (const DrawnHand& hand : hands) vertices += hand.mesh->vertex_count();
@@ -87,7 +87,7 @@ void Drawer::draw(std::span<const DrawnHand> hands, std::span<const HandAssets* 
   gl.BindVertexArray(vertices_.name());
   std::size_t offset = ring_->offset();
   for (std::size_t i = 0; i < hands.size(); ++i) {
-    draw_hand(*assets[i], static_cast<int>(i), facings_[i], offset);
+    draw_hand(assets[i], static_cast<int>(i), facings_[i], offset);
     offset += hands[i].mesh->vertex_count() * sizeof(Placed);
   }
   ring_->sent();

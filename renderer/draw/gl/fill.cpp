@@ -70,12 +70,12 @@ void Filler::set_table(const config::Fill& settings) {
   context_->gl().ProgramUniform1i(fill_.name(), 1, table_.reach_px);
 }
 
-void Filler::bind(std::span<const HandAssets* const> contents, const Layers& frame) const {
+void Filler::bind(std::span<const HandAssets> contents, const Layers& frame) const {
   const Functions& gl = context_->gl();
   gl.BindTextureUnit(0, mask_.name());
   for (GLuint i = 0; i < contents.size(); ++i) {
-    const glm::ivec4& picture = contents[i]->picture;
-    gl.BindTextureUnit(1 + i, contents[i]->content.name());
+    const glm::ivec4 picture = contents[i].picture->place();
+    gl.BindTextureUnit(1 + i, contents[i].picture->texels.name());
     gl.ProgramUniform4i(fill_.name(), 2 + static_cast<GLint>(i), picture.x, picture.y, picture.z,
                         picture.w);
   }
@@ -89,7 +89,7 @@ void Filler::bind(std::span<const HandAssets* const> contents, const Layers& fra
 }
 
 void Filler::fill(const config::Fill& settings, const Rect& region,
-                  std::span<const HandAssets* const> contents, const Layers& frame) {
+                  std::span<const HandAssets> contents, const Layers& frame) {
   const Functions& gl = context_->gl();
   set_table(settings);
   constexpr Counts kNone{0, 1, 1, 0, 0, 0};

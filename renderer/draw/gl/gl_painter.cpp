@@ -108,7 +108,7 @@ class Painting final : public GlPainter {
   Layers frame_;
   std::unique_ptr<Layers> moved_;  ///< the target of warp(); made by the first one
   ReadBack read_back_;
-  std::vector<const HandAssets*> contents_;  ///< of the drawing, one per hand
+  std::vector<HandAssets> contents_;  ///< of the drawing, one per hand
 };
 
 /// Sets the state that no pass changes.

@@ -13,51 +13,80 @@ struct Vertex {
   glm::vec2 uv;
   std::uint32_t chart;
 };
-static_assert(sizeof(Vertex) == HandAssets::kVertexBytes);
+static_assert(sizeof(Vertex) == MeshCopy::kVertexBytes);
 
-Image2d copy_texels(Context& context, View<const std::uint32_t> texels) {
-  Image2d image = make_image(context, GL_R32UI, texels.width, texels.height);
-  context.gl().TextureSubImage2D(image.name(), 0, 0, 0, texels.width, texels.height, GL_RED_INTEGER,
-                                 GL_UNSIGNED_INT, texels.data);
-  return image;
+bool is_same(const msg::MipLayout& a, const msg::MipLayout& b) {
+  return a.width == b.width && a.height == b.height && a.smooth == b.smooth;
+}
+
+/// Forgets the copies of contents that may have changed, and the least recently used of too many.
+template <class Copy>
+void trim(std::vector<std::unique_ptr<Copy>>& kept, std::size_t most) {
+  std::erase_if(kept, [](const auto& one) { return one->revision == 0; });
+  while (kept.size() > most)
+    kept.erase(std::ranges::min_element(kept, {}, [](const auto& one) { return one->used; }));
+}
+
+/// The copy with a revision; null if there is none.
+template <class Copy>
+Copy* find_copy(const std::vector<std::unique_ptr<Copy>>& kept, std::uint64_t revision) {
+  for (const auto& one : kept)
+    if (revision != 0 && one->revision == revision) return one.get();
+  return nullptr;
 }
 
 }  // namespace
 
-HandAssets AssetCache::copy(const DrawnHand& hand) {
-  static const MipChain kWhite;
-  const MipChain& content = hand.texture != nullptr ? *hand.texture : kWhite;
-  const HandMesh& mesh = *hand.mesh;
+MeshCopy AssetCache::copy(const HandMesh& mesh, std::uint64_t revision) {
   std::vector<Vertex> vertices(mesh.vertex_count());
   for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = {mesh.uv[i], mesh.chart[i]};
   return {make_buffer(context_, vertices.size() * sizeof(Vertex), 0, vertices.data()),
           make_buffer(context_, mesh.triangles.size() * sizeof(mesh.triangles[0]), 0,
                       mesh.triangles.data()),
-          static_cast<GLsizei>(3 * mesh.triangles.size()),
-          copy_texels(context_, content.texels()),
-          {content.width(), content.height(), content.padded_height(),
-           content.smooth() ? content.levels() - 1 : -1},
-          hand.revision};
+          static_cast<GLsizei>(3 * mesh.triangles.size()), revision};
 }
 
-HandAssets& AssetCache::assets_of(const DrawnHand& hand) {
-  if (hand.revision != 0) {
-    for (const auto& one : kept_)
-      if (one->revision == hand.revision) return *one;
-  }
-  return *kept_.emplace_back(std::make_unique<HandAssets>(copy(hand)));
+MeshCopy& AssetCache::mesh_of(const DrawnHand& hand) {
+  if (auto* kept = find_copy(meshes_, hand.mesh_revision)) return *kept;
+  return *meshes_.emplace_back(std::make_unique<MeshCopy>(copy(*hand.mesh, hand.mesh_revision)));
 }
 
-std::span<const HandAssets* const> AssetCache::find(std::span<const DrawnHand> hands) {
+/// A place for a picture: that of one of its size which the last two drawings did not use, or a new
+/// one.
+std::unique_ptr<PictureCopy> AssetCache::spare(const msg::MipLayout& layout) {
+  const auto old = std::ranges::find_if(pictures_, [&](const auto& one) {
+    return one->used + 2 < draws_ && is_same(one->layout, layout);
+  });
+  if (old == pictures_.end())
+    return std::make_unique<PictureCopy>(PictureCopy{
+        make_image(context_, GL_R32UI, layout.stride(), layout.rows()), layout});
+  auto reused = std::move(*old);
+  pictures_.erase(old);
+  return reused;
+}
+
+PictureCopy& AssetCache::picture_of(const DrawnHand& hand) {
+  static const MipChain kWhite;
+  if (auto* kept = find_copy(pictures_, hand.picture_revision)) return *kept;
+  const MipView content = hand.picture.texels != nullptr ? hand.picture : kWhite.view();
+  const View<const std::uint32_t> texels = content.all();
+  auto& made = pictures_.emplace_back(spare(content.layout));
+  made->revision = hand.picture_revision;
+  context_.gl().TextureSubImage2D(made->texels.name(), 0, 0, 0, texels.width, texels.height,
+                                  GL_RED_INTEGER, GL_UNSIGNED_INT, texels.data);
+  return *made;
+}
+
+std::span<const HandAssets> AssetCache::find(std::span<const DrawnHand> hands) {
   ++draws_;
-  std::erase_if(kept_, [](const auto& one) { return one->revision == 0; });
-  while (kept_.size() > kKept)
-    kept_.erase(std::ranges::min_element(kept_, {}, [](const auto& one) { return one->used; }));
+  trim(meshes_, kKept);
+  trim(pictures_, kKept);
   found_.clear();
   for (const DrawnHand& hand : hands) {
-    HandAssets& assets = assets_of(hand);
-    assets.used = draws_;
-    found_.push_back(&assets);
+    MeshCopy& mesh = mesh_of(hand);
+    PictureCopy& picture = picture_of(hand);
+    mesh.used = picture.used = draws_;
+    found_.push_back({&mesh, &picture});
   }
   return found_;
 }

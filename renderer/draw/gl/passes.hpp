@@ -16,38 +16,60 @@
 /// The passes of the painter on the GPU. Every region must be within the image. One thread.
 namespace handcast::renderer::gl {
 
-/// The parts of a hand that do not change from frame to frame, in the GPU's memory.
-struct HandAssets {
+/// A mesh in the GPU's memory.
+struct MeshCopy {
   Buffer vertices;             ///< per vertex: texture coordinates (2 floats), chart (uint)
   Buffer triangles;            ///< three indices of 16 bits each
   GLsizei index_count = 0;     ///< three times the number of triangles
-  Image2d content;             ///< R32UI: MipChain::texels()
-  glm::ivec4 picture{};        ///< see `picture` in shaders/common.glsl
-  std::uint64_t revision = 0;  ///< DrawnHand::revision of the copy
+  std::uint64_t revision = 0;  ///< DrawnHand::mesh_revision of the copy
   std::uint64_t used = 0;      ///< number of the last draw that used it
 
   /// Bytes of a vertex.
   static constexpr GLsizei kVertexBytes = 12;
 };
 
-/// Keeps the assets of the hands drawn last, by DrawnHand::revision.
+/// A picture in the GPU's memory.
+struct PictureCopy {
+  Image2d texels;              ///< R32UI: MipView::all()
+  msg::MipLayout layout;       ///< how they lie
+  std::uint64_t revision = 0;  ///< DrawnHand::picture_revision of the copy
+  std::uint64_t used = 0;      ///< number of the last draw that used it
+
+  /// See `picture` in shaders/common.glsl.
+  glm::ivec4 place() const {
+    return {layout.width, layout.height, layout.padded_height(),
+            layout.smooth ? layout.levels() - 1 : -1};
+  }
+};
+
+/// The copies of what one hand is drawn from.
+struct HandAssets {
+  const MeshCopy* mesh;
+  const PictureCopy* picture;
+};
+
+/// Keeps the copies of the meshes and pictures drawn last. Content changes its pictures many times
+/// a second: a copy that is no longer used is overwritten by a picture of its size.
 class AssetCache {
  public:
-  /// Without assets.
+  /// Without copies.
   explicit AssetCache(Context& context) : context_(context) {}
 
   /// The assets of each of up to four hands, copied if they are new. Valid until the next call.
-  std::span<const HandAssets* const> find(std::span<const DrawnHand> hands);
+  std::span<const HandAssets> find(std::span<const DrawnHand> hands);
 
  private:
   static constexpr std::size_t kKept = 8;
 
-  HandAssets& assets_of(const DrawnHand& hand);
-  HandAssets copy(const DrawnHand& hand);
+  MeshCopy& mesh_of(const DrawnHand& hand);
+  PictureCopy& picture_of(const DrawnHand& hand);
+  MeshCopy copy(const HandMesh& mesh, std::uint64_t revision);
+  std::unique_ptr<PictureCopy> spare(const msg::MipLayout& layout);
 
   Context& context_;
-  std::vector<std::unique_ptr<HandAssets>> kept_;
-  std::vector<const HandAssets*> found_;
+  std::vector<std::unique_ptr<MeshCopy>> meshes_;
+  std::vector<std::unique_ptr<PictureCopy>> pictures_;
+  std::vector<HandAssets> found_;
   std::uint64_t draws_ = 0;
 };
 
@@ -75,7 +97,7 @@ class Drawer {
   /// Errors (unavailable): those of make_program().
   static Result<Drawer> create(Context& context, glm::ivec2 size_px);
   /// Draws `hands` into `region` of `out`; nothing if the context is lost.
-  void draw(std::span<const DrawnHand> hands, std::span<const HandAssets* const> assets,
+  void draw(std::span<const DrawnHand> hands, std::span<const HandAssets> assets,
             const Rect& region, const Layers& out);
 
  private:
@@ -127,7 +149,7 @@ class Filler {
   bool upload(View<const std::uint8_t> mask, const Rect& region);
   /// Fills `region` of `frame` by the mask uploaded last. `contents`: one per hand.
   void fill(const config::Fill& settings, const Rect& region,
-            std::span<const HandAssets* const> contents, const Layers& frame);
+            std::span<const HandAssets> contents, const Layers& frame);
   /// The counts of the last fill(), valid after the commands up to now are finished (wait()).
   FillCounts counts() const;
 
@@ -139,7 +161,7 @@ class Filler {
 
   Filler(Context& context, Program sort, Program fill, glm::ivec2 size_px);
   void set_table(const config::Fill& settings);
-  void bind(std::span<const HandAssets* const> contents, const Layers& frame) const;
+  void bind(std::span<const HandAssets> contents, const Layers& frame) const;
 
   Context* context_;
   Program sort_, fill_;

@@ -33,7 +33,6 @@ class Photographer {
 
   const twin::Twin& twin_;
   std::unique_ptr<renderer::Painter> painter_;
-  renderer::MipChain white_;
   std::array<Surface, msg::kMaxHands> surfaces_;
   renderer::Image<std::uint32_t> picture_;
 };

@@ -161,7 +161,8 @@ std::map<std::string, std::string> take_files(config::Rig& rig) {
         {rig.content.right, "content_right"},
         {rig.hand.left, "hand_left"},
         {rig.hand.right, "hand_right"}}) {
-    if (setting.empty() || setting.starts_with("builtin:")) continue;
+    const bool is_content = std::string_view(name).starts_with("content");
+    if (setting.empty() || (is_content && !config::is_path("content.left", setting))) continue;
     const auto ending = std::filesystem::path(setting).extension().string();
     auto contents = read_input(setting, kMostMesh);
     if (!contents || ending == ".gltf") {

@@ -25,7 +25,7 @@ TEST(MipChain, ATexelIsTheMeanOfTheLightBelowIt) {
   Texture picture(4, 2, 0xff000000u);
   picture.at(0, 0) = picture.at(1, 1) = 0xffffffffu;
   const MipChain chain(picture, true);
-  ASSERT_EQ(chain.levels(), 3);
+  ASSERT_EQ(chain.layout().levels(), 3);
   EXPECT_NEAR(red(chain.texel(1, 0, 0)), 255 * srgb_level(0.5), 1);
   EXPECT_EQ(red(chain.texel(1, 1, 0)), 0);
   EXPECT_NEAR(red(chain.texel(2, 0, 0)), 255 * srgb_level(0.25), 1);
@@ -45,7 +45,7 @@ TEST(MipChain, EachLevelHasABorderThatRepeatsItsEdge) {
     for (int x = 0; x < 6; ++x)
       picture.at(x, y) = 0xff000000u | static_cast<unsigned>(40 * y << 8 | 40 * x);
   const MipChain chain(picture, true);
-  for (int level = 0, width = 6, height = 5; level < chain.levels();
+  for (int level = 0, width = 6, height = 5; level < chain.layout().levels();
        ++level, width = (width + 1) / 2, height = (height + 1) / 2) {
     for (int x = 0; x < width; ++x) {
       ASSERT_EQ(chain.texel(level, x, -1), chain.texel(level, x, 0)) << level;
@@ -59,16 +59,16 @@ TEST(MipChain, EachLevelHasABorderThatRepeatsItsEdge) {
 }
 
 TEST(MipChain, APictureThatIsNotSmoothHasOneLevel) {
-  EXPECT_EQ(MipChain(Texture(64, 64), false).levels(), 1);
-  EXPECT_EQ(MipChain(Texture(64, 64), true).levels(), 7);
+  EXPECT_EQ(MipChain(Texture(64, 64), false).layout().levels(), 1);
+  EXPECT_EQ(MipChain(Texture(64, 64), true).layout().levels(), 7);
 }
 
 TEST(MipChain, AHugePictureIsHalvedFirst) {
   const MipChain chain(Texture(5000, 3, 0xff8040c0u), true);
-  EXPECT_EQ(chain.width(), 2500);
-  EXPECT_EQ(chain.height(), 2);
+  EXPECT_EQ(chain.layout().width, 2500);
+  EXPECT_EQ(chain.layout().height, 2);
   EXPECT_EQ(chain.texel(0, 2499, 1), 0xff8040c0u);
-  EXPECT_EQ(MipChain(Texture(5000, 3), false).width(), 5000);
+  EXPECT_EQ(MipChain(Texture(5000, 3), false).layout().width, 5000);
 }
 
 }  // namespace

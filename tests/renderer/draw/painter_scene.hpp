@@ -59,7 +59,7 @@ class Shape {
 
   void dim(float light) { std::fill(light_.begin(), light_.end(), light); }
   DrawnHand drawn(bool shaded = false) const {
-    return {&mesh_, &chain_, position_px_, depth_m_,
+    return {&mesh_, chain_.view(), position_px_, depth_m_,
             shaded ? std::span<const float>(light_) : std::span<const float>()};
   }
   const HandMesh& mesh() const { return mesh_; }

@@ -24,7 +24,12 @@ struct Listener {
     landmarks.push_back(message.header.frame_id);
   }
 
+  void wear(msg::Side side, const renderer::MipView& picture) {
+    worn[static_cast<std::size_t>(side)] = picture;
+  }
+
   std::vector<std::uint64_t> poses, landmarks;
+  std::array<renderer::MipView, 2> worn;
 };
 
 /// A ring with its writer and a reader.
@@ -67,8 +72,10 @@ class InputsTest : public testing::Test {
   Ring<msg::CameraFrame> frames_{msg::CameraFrame::bytes(4, 2)};
   Ring<msg::HandPoses> poses_;
   Ring<msg::Landmarks> landmarks_;
+  Ring<msg::ContentPicture> left_{msg::ContentPicture::bytes(8, 4)},
+      right_{msg::ContentPicture::bytes(8, 4)};
   Inputs inputs_{std::move(frames_.reader), std::move(poses_.reader), std::move(landmarks_.reader),
-                 kCalibration};
+                 Contents(std::move(left_.reader), std::move(right_.reader)), kCalibration};
   Listener pipeline_;
 };
 
@@ -118,6 +125,7 @@ TEST_F(InputsTest, WhatBelongsToAnotherCalibrationIsLeftOutAndReported) {
 struct Sink {
   void push(std::int64_t, const msg::HandPoses&) { ++messages; }
   void push(std::int64_t, const msg::Landmarks&) { ++messages; }
+  void wear(msg::Side, const renderer::MipView&) { ++messages; }
   int messages = 0;
 };
 

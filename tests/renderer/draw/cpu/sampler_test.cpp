@@ -73,9 +73,9 @@ TEST(Sampler, AMapLeadsToTheTexelsOfItsLevel) {
     for (int x = 0; x < 8; ++x) picture.at(x, y) = static_cast<std::uint32_t>(x + 16 * y);
   for (const bool smooth : {true, false}) {
     const MipChain chain(picture, smooth);
-    const Sampler sampler(&chain);
-    ASSERT_EQ(sampler.maps().size(), static_cast<std::size_t>(chain.levels()));
-    for (int level = 0; level < chain.levels(); ++level) {
+    const Sampler sampler(chain.view());
+    ASSERT_EQ(sampler.maps().size(), static_cast<std::size_t>(chain.layout().levels()));
+    for (int level = 0; level < chain.layout().levels(); ++level) {
       const int columns = 8 >> level, rows = 4 >> level;
       for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
@@ -95,7 +95,7 @@ TEST(Sampler, AMapLeadsToTheTexelsOfItsLevel) {
 
 TEST(Sampler, PlacesOutsideThePictureAreMovedToItsEdge) {
   const MipChain chain(Texture(4, 4, 0xffffffff), true);
-  const TexelMap map = Sampler(&chain).maps()[0];
+  const TexelMap map = Sampler(chain.view()).maps()[0];
   EXPECT_EQ(map.within(map.place({-3, 5})), map.place({0, 1}));
   EXPECT_EQ(map.within({NAN, NAN}), map.place({0, 0}));
   EXPECT_EQ(map.within(map.place({0.25f, 0.5f})), map.place({0.25f, 0.5f}));

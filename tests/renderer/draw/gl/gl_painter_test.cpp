@@ -59,7 +59,7 @@ TEST_F(GlPainterTest, ACopyOfTheTextureIsUsedUntilItsRevisionChanges) {
   for (Shape* each : {&shape, &other}) each->rectangle({10, 10}, {50, 50});
   const auto colour_of = [&](const Shape& each, std::uint64_t revision) {
     DrawnHand drawn = each.drawn();
-    drawn.revision = revision;
+    drawn.mesh_revision = drawn.picture_revision = revision;
     painter_->draw({&drawn, 1}, {0, 0, 200, 150});
     return painter_->colour().at(20, 20);
   };
