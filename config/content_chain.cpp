@@ -148,7 +148,8 @@ std::string_view content_kind_of(std::string_view file) {
 bool is_content_file(const ContentElement& element) {
   const auto& kind = element.kind;
   const bool has_file = kind == "picture" || kind == "film" || kind == "isf" || kind == "shadertoy";
-  return has_file && !element.what.empty() && element.what.find("://") == std::string::npos;
+  const bool is_address = kind == "film" && element.what.find("://") != std::string::npos;
+  return has_file && !element.what.empty() && !is_address;
 }
 
 bool is_still(const ContentChain& chain) {

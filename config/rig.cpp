@@ -64,7 +64,7 @@ void resolve_contents(const Listing& listing, const std::filesystem::path& folde
     auto& text = *std::get<std::string*>(find_setting(listing, path)->target);
     auto resolved = resolve_content(text, folder);
     if (!resolved) faults.add(fmt::format("{}: {}: {}", where, path, resolved.error().what));
-    if (resolved) text = std::move(*resolved);
+    text = resolved ? std::move(*resolved) : "builtin:white";
   }
 }
 

@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
                        .publishes = {"projection.frames"},
                        .subscribes = {"camera.frames", "pose.hands", "landmarks.hands", "content.left",
                                       "content.right", std::string(msg::kTestPictures)},
-                       .settings = {"projector", "content", "hand", "cascade"},
+                       .settings = {"projector", "content.shading", "content.smooth", "hand", "cascade"},
                        .backends = service::describe_rows(projector::projector_backends())},
                       argc, argv, run_projector, check_projector);
 }

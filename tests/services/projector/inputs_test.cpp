@@ -121,6 +121,50 @@ TEST_F(InputsTest, WhatBelongsToAnotherCalibrationIsLeftOutAndReported) {
   EXPECT_TRUE(inputs_.image());
 }
 
+void publish_content(ipc::Writer<msg::ContentPicture>& writer, std::uint32_t colour,
+                     std::uint32_t width_px = 8) {
+  auto slot = writer.loan();
+  slot->width_px = width_px;
+  slot->height_px = 4;
+  if (width_px == 8) {
+    const renderer::Texture picture(8, 4, colour);
+    renderer::write_mips(picture.view(), slot->mip_layout(), slot->texels());
+  }
+  writer.publish(std::move(slot));
+}
+
+TEST_F(InputsTest, EachHandWearsItsNewestContentWhereItWasWritten) {
+  publish_content(left_.writer, 0xff000001);
+  publish_content(left_.writer, 0xff000002);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  const auto worn = pipeline_.worn;
+  ASSERT_NE(worn[0].texels, nullptr);
+  EXPECT_EQ(worn[0].layout.width, 8);
+  EXPECT_EQ(worn[0].all().at(1, 1), 0xff000002u);
+  EXPECT_EQ(worn[1].texels, nullptr);
+  // A writer that goes on does not touch what is worn.
+  for (std::uint32_t colour = 3; colour < 40; ++colour) publish_content(left_.writer, colour);
+  EXPECT_EQ(worn[0].all().at(1, 1), 0xff000002u);
+  publish_content(right_.writer, 0xff000050);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  EXPECT_EQ(pipeline_.worn[0].all().at(8, 4), 39u);
+  EXPECT_EQ(pipeline_.worn[1].all().at(1, 1), 0xff000050u);
+}
+
+TEST_F(InputsTest, ContentOfAnImpossibleSizeLeavesTheOneBefore) {
+  publish_content(left_.writer, 0xff000001);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  const auto worn = pipeline_.worn[0];
+  for (const std::uint32_t width_px : {0u, 9u, 2048u, 2049u, ~0u}) {
+    publish_content(left_.writer, 0, width_px);
+    (void)inputs_.deliver(pipeline_, Deadline::now());
+    EXPECT_EQ(pipeline_.worn[0].texels, worn.texels) << width_px;
+  }
+  publish_content(left_.writer, 0xff000002);
+  ASSERT_TRUE(inputs_.deliver(pipeline_, Deadline::now()));
+  EXPECT_EQ(pipeline_.worn[0].all().at(1, 1), 0xff000002u);
+}
+
 /// Replaces the pipeline and keeps nothing.
 struct Sink {
   void push(std::int64_t, const msg::HandPoses&) { ++messages; }
@@ -147,6 +191,7 @@ TEST_F(InputsTest, WithAndWithoutNewsAFrameAllocatesAndLocksNothing) {
     if (id % 2 == 0) publish_image(id);
     if (id % 3 == 0) poses_.publish(id);
     if (id % 4 == 0) landmarks_.publish(id);
+    if (id % 5 == 0) publish_content(left_.writer, 0xff000000);
     const auto before = test::frame_costs();
     EXPECT_EQ(frame(id), 5u);
     const auto costs = test::frame_costs() - before;
@@ -154,7 +199,7 @@ TEST_F(InputsTest, WithAndWithoutNewsAFrameAllocatesAndLocksNothing) {
     EXPECT_EQ(costs.allocations, 0u) << "frame " << id;
     EXPECT_EQ(costs.locks, 0u) << "frame " << id;
   }
-  EXPECT_EQ(sink.messages, 6 + 5);
+  EXPECT_EQ(sink.messages, 6 + 5 + 4);
 }
 
 TEST_F(InputsTest, AnImageOfTheOldCalibrationIsNotKeptWhenTheNewOneComes) {

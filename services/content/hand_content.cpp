@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/content/hand_content.hpp"
+
+#include <utility>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+#include "renderer/base/mip_chain.hpp"
+
+namespace handcast::content {
+namespace {
+
+std::string_view name_of(Side side) { return side == Side::left ? "left" : "right"; }
+
+const std::string& content_of(const config::Content& settings, Side side) {
+  return side == Side::left ? settings.left : settings.right;
+}
+
+}  // namespace
+
+HandContent::HandContent(Opening like, config::Content settings,
+                         ipc::Writer<msg::ContentPicture> pictures)
+    : like_(std::move(like)),
+      settings_(std::move(settings)),
+      mixer_(like_),
+      pictures_(std::move(pictures)) {}
+
+/// Errors: bad_config (the content or the transition is wrong), those of their sources.
+Result<void> HandContent::change(const std::string& content, std::string_view transition,
+                                 double seconds) {
+  const auto written = config::parse_content(content);
+  if (!written) return tl::make_unexpected(written.error());
+  auto chain = Chain::open(*written, like_);
+  if (!chain) return tl::make_unexpected(chain.error());
+  if (auto changed = mixer_.change(std::move(*chain), transition, seconds); !changed)
+    return changed;
+  state_.content.set(content);
+  state_.fault.set("");
+  is_new_ = true;
+  return {};
+}
+
+void HandContent::start() {
+  const auto& content = content_of(settings_, like_.side);
+  const auto shown = change(content, "cut", 0);
+  if (shown) return;
+  (void)change("builtin:white", "cut", 0);
+  note_fault(shown.error());
+}
+
+void HandContent::obey(const msg::ContentCommand& command) {
+  if (!command.is_for(like_.side)) return;
+  const std::string content(command.content.view()), transition(command.transition.view());
+  const auto shown =
+      change(content, transition.empty() ? settings_.transition : transition,
+             command.transition_s < 0 ? settings_.transition_s : command.transition_s);
+  state_.command = command.header.frame_id;
+  if (shown)
+    log::info("{}: {}", name_of(like_.side), printable(content));
+  else
+    note_fault(shown.error());
+}
+
+void HandContent::note_fault(const Error& error) {
+  if (state_.fault.view() == error.what) return;
+  state_.fault.set(error.what);
+  log::warning("{}: {}", name_of(like_.side), printable(error.what));
+}
+
+void HandContent::draw(const HandState& hand, const HandState& other, std::int64_t time_ns) {
+  const std::int64_t begin_ns = now_ns();
+  const auto drawn = mixer_.draw(hand, other, ns_to_seconds(time_ns));
+  if (!drawn) note_fault(drawn.error());
+  if (drawn.value_or(false) || state_.pictures == 0 || is_new_) publish(time_ns);
+  is_new_ = false;
+  constexpr float kShare = 0.05f;  // of the newest in the mean
+  const auto took_ms = static_cast<float>(ns_to_ms(now_ns() - begin_ns));
+  state_.draw_ms += (state_.draw_ms == 0 ? 1 : kShare) * (took_ms - state_.draw_ms);
+}
+
+void HandContent::publish(std::int64_t time_ns) {
+  auto slot = pictures_.loan();
+  if (!slot) return;  // the picture after this one will find one
+  const auto& picture = mixer_.picture();
+  slot->header.frame_id = ++state_.pictures;
+  slot->header.origin_ns = time_ns;
+  slot->width_px = static_cast<std::uint32_t>(picture.width());
+  slot->height_px = static_cast<std::uint32_t>(picture.height());
+  slot->smooth = settings_.smooth;
+  renderer::write_mips(picture.view(), slot->mip_layout(), slot->texels());
+  pictures_.publish(std::move(slot));
+}
+
+}  // namespace handcast::content

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "services/content/hand_content.hpp"
+#include "services/content/hands.hpp"
+#include "services/runtime/context.hpp"
+
+using namespace handcast;
+using namespace std::chrono_literals;
+using service::must;
+
+/// The state of an idle service is published so often, for `handcast content`.
+static constexpr std::int64_t kStateEvery_ns = 500'000'000;
+
+/// The content of both hands, and what moves it.
+struct Contents {
+  content::Hands hands;
+  std::vector<content::HandContent> worn;  ///< left, right
+  ipc::Reader<msg::HandPoses> poses;
+  ipc::Reader<msg::ContentCommand> commands;
+  ipc::Writer<msg::ContentState> states;
+  std::uint64_t published = 0;
+};
+
+static content::Opening opening_of(const config::Rig& rig, msg::Side side,
+                                   const content::Hands& hands) {
+  content::Opening like;
+  like.width = rig.content.width_px;
+  like.height = rig.content.height_px;
+  like.meshes = hands.meshes();
+  like.side = side;
+  return like;
+}
+
+static void take_poses(service::Context& context, Contents& all) {
+  while (all.poses.await(Deadline::now())) {
+    const auto sample = all.poses.next(Deadline::now());
+    if (!sample && sample.error().code != Errc::timeout) context.tolerate(sample.error());
+    if (!sample) return;
+    all.hands.push(**sample);
+  }
+}
+
+/// Obeys all commands that have come. True if there was one.
+static bool take_commands(service::Context& context, Contents& all) {
+  bool has_come = false;
+  while (all.commands.await(Deadline::now())) {
+    const auto command = all.commands.next(Deadline::now());
+    if (!command && command.error().code != Errc::timeout) context.tolerate(command.error());
+    if (!command) break;
+    for (auto& worn : all.worn) worn.obey(**command);
+    has_come = true;
+  }
+  return has_come;
+}
+
+static void publish_state(Contents& all) {
+  auto state = all.states.loan();
+  if (!state) return;
+  state->header.frame_id = ++all.published;
+  state->header.origin_ns = now_ns();
+  for (std::size_t i = 0; i < all.worn.size(); ++i) state->hands[i] = all.worn[i].state();
+  all.states.publish(std::move(state));
+}
+
+/// Draws what is due for both hands. A hand that is not there needs no new pictures.
+static void draw(Contents& all, std::int64_t time_ns) {
+  const bool needs_surface = std::ranges::any_of(
+      all.worn, [](const auto& worn) { return worn.needs().surface || worn.needs().camera; });
+  all.hands.needs_surface(needs_surface);
+  const auto hands = all.hands.at(time_ns);
+  for (std::size_t i = 0; i < all.worn.size(); ++i)
+    if (hands[i].is_there || all.worn[i].is_due())
+      all.worn[i].draw(hands[i], hands[1 - i], time_ns);
+}
+
+/// Draws the contents of the hands content.rate_hz times a second, until the service ends.
+static void run_content(service::Context& context) {
+  const auto& rig = context.rig();
+  auto hands = must(content::Hands::load(rig, context.calibration()));
+  context.stand_by();
+  Contents all{.hands = std::move(hands),
+               .worn = {},
+               .poses = must(context.reader<msg::HandPoses>("pose.hands")),
+               .commands = must(context.reader<msg::ContentCommand>(msg::kContentCommands)),
+               .states = must(context.writer<msg::ContentState>("content.state"))};
+  for (const auto side : {msg::Side::left, msg::Side::right}) {
+    const auto* const stream = side == msg::Side::left ? "content.left" : "content.right";
+    all.worn.emplace_back(opening_of(rig, side, all.hands), rig.content,
+                          must(context.writer<msg::ContentPicture>(stream)));
+    all.worn.back().start();
+  }
+  context.ready();
+  const auto period_ns = seconds_to_ns(1 / rig.content.rate_hz);
+  std::int64_t due_ns = now_ns(), state_ns = due_ns;
+  while (context.running()) {
+    // A command is obeyed at once.
+    const bool is_changed =
+        all.commands.await(Deadline::at_ns(due_ns)) && take_commands(context, all);
+    const std::int64_t begin_ns = now_ns();
+    if (begin_ns < due_ns && !is_changed) continue;
+    take_poses(context, all);
+    draw(all, begin_ns + period_ns);
+    context.mark({all.published, begin_ns},
+                 std::array{msg::StageMark{msg::Stage::draw, 0, begin_ns, now_ns()}});
+    due_ns = std::max(due_ns + period_ns, now_ns());
+    if (begin_ns < state_ns && !is_changed) continue;
+    publish_state(all);
+    state_ns = begin_ns + kStateEvery_ns;
+  }
+}
+
+/// Opens both contents.
+static Result<void> check_content(const config::Rig& rig, const calib::Calibration& calibration) {
+  const auto hands = content::Hands::load(rig, calibration);
+  if (!hands) return tl::make_unexpected(hands.error());
+  for (const auto side : {msg::Side::left, msg::Side::right}) {
+    const auto name = side == msg::Side::left ? "content.left" : "content.right";
+    const auto written =
+        config::parse_content(side == msg::Side::left ? rig.content.left : rig.content.right);
+    if (!written) return fail_in(name, written.error());
+    const auto chain = content::Chain::open(*written, opening_of(rig, side, *hands));
+    if (!chain) return fail_in(name, chain.error());
+  }
+  return {};
+}
+
+int main(int argc, char** argv) {
+  return service::run({.name = "content",
+                       .summary = "Draws what is on the hands: pictures, films, shaders.",
+                       .paced_by = "content.rate_hz",
+                       .publishes = {"content.left", "content.right", "content.state"},
+                       .subscribes = {"pose.hands", std::string(msg::kContentCommands)},
+                       .settings = {"content", "hand", "cascade.predict", "cascade.skin"}},
+                      argc, argv, run_content, check_content);
+}
