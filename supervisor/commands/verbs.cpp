@@ -50,6 +50,8 @@ constexpr std::array kVerbs{
               run_config, Group::set_up},
     VerbEntry{"template", "Writes templates for the pictures that are cast on the hands.", nullptr,
               Group::set_up},
+    VerbEntry{"gallery", "Shows looks on the moving hands of the digital twin, as a page.", nullptr,
+              Group::look},
     VerbEntry{"simulate", "Scores a rig in virtual time against its digital twin.", nullptr,
               Group::score},
     VerbEntry{"sweep", "Scores a rig with all combinations of some settings, on all cores.",

@@ -43,7 +43,7 @@ class SystemTest : public testing::Test {
 };
 
 inline const std::vector<std::string> kServices{"camera", "pose", "landmarks", "projector",
-                                                "observer"};
+                                                "content", "observer"};
 
 /// The last line of a text.
 std::string last_line(const std::string& text);

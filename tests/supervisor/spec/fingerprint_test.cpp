@@ -19,7 +19,7 @@ using testing::UnorderedElementsAreArray;
 using Paths = std::set<std::string>;
 
 const std::vector<std::string> kServices{"camera",    "pose",     "landmarks",
-                                         "projector", "observer", "exporter"};
+                                         "projector", "content", "observer", "exporter"};
 
 /// What the programs of this build say about themselves.
 const Catalogue& built() {
@@ -167,8 +167,14 @@ TEST(Fingerprint, ARealCameraDependsOnItsOwnSection) {
 }
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
-  expect_reads("projector", {}, {"projector", "content", "hand", "cascade"},
+  expect_reads("projector", {},
+               {"projector", "content.shading", "content.smooth", "hand", "cascade"},
                {"projector.process.standby"});
+}
+
+TEST(Fingerprint, ContentDependsOnItsSectionAndOnWhatPredictsTheHandsThatItReactsTo) {
+  expect_reads("content", {}, {"content", "hand", "cascade.predict", "cascade.skin"},
+               {"content.process.standby"});
 }
 
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
@@ -265,7 +271,7 @@ TEST(Fingerprint, ABackEndThatNobodyThoughtOfDependsOnAllButTheSupervisorsSettin
        {"camera.rate_hz", "camera.replay.directory", "cascade.fill.method", "twin.tracker.age_ms"})
     EXPECT_TRUE(paths.contains(path)) << path;
   EXPECT_FALSE(paths.contains("supervisor.ready_s"));
-  EXPECT_TRUE(read_by("content", {}).contains("content.left"));  // a service of another year
+  EXPECT_TRUE(read_by("sound", {}).contains("content.left"));  // a service of another year
 }
 
 TEST(Fingerprint, AFileThatChangedUnderItsNameIsAChange) {
