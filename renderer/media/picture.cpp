@@ -179,16 +179,43 @@ Result<Image<Pixel>> decode_as(spng_format format, const PngFile& opened,
   return image;
 }
 
-Result<Texture> read_png(std::string_view bytes, const std::filesystem::path& file) {
+enum class Alpha { over_black, premultiplied };
+
+/// Multiplies the levels of a picture by the alphas of another one.
+void premultiply(Texture& picture, const Texture& alphas) {
+  const auto over_255 = [](std::uint32_t n) { return (n + 128 + ((n + 128) >> 8)) >> 8; };
+  for (std::size_t i = 0; i < picture.pixels().size(); ++i) {
+    const std::uint32_t rgba = picture.pixels()[i], alpha = alphas.pixels()[i] >> 24;
+    const auto level = [&](int shift) { return over_255((rgba >> shift & 255) * alpha) << shift; };
+    picture.pixels()[i] = alpha << 24 | level(16) | level(8) | level(0);
+  }
+}
+
+/// The picture in sRGB, with its alpha.
+Texture premultiplied(Image<WidePixel> picture, const ColourProfile& profile) {
+  Texture alphas(picture.width(), picture.height());
+  for (std::size_t i = 0; i < picture.pixels().size(); ++i) {
+    auto& alpha = picture.pixels()[i][3];
+    alphas.pixels()[i] = (alpha + 128u) / 257 << 24;
+    alpha = 65'535;
+  }
+  Texture converted = srgb_over_black(picture, profile);
+  premultiply(converted, alphas);
+  return converted;
+}
+
+Result<Texture> read_png(std::string_view bytes, const std::filesystem::path& file, Alpha alpha) {
   const auto opened = open_png(bytes, file);
   if (!opened) return tl::make_unexpected(opened.error());
   const int orientation = orientation_of(opened->chunks->exif);
   if (const auto profile = profile_of(*opened, file))
-    return decode_as<WidePixel>(SPNG_FMT_RGBA16, *opened, file).map([&](const auto& picture) {
-      return turned(srgb_over_black(picture, *profile), orientation);
+    return decode_as<WidePixel>(SPNG_FMT_RGBA16, *opened, file).map([&](auto&& picture) {
+      return turned(alpha == Alpha::over_black ? srgb_over_black(picture, *profile)
+                                               : premultiplied(std::move(picture), *profile),
+                    orientation);
     });
   return decode_as<std::uint32_t>(SPNG_FMT_RGBA8, *opened, file).map([&](Texture&& picture) {
-    put_over_black(picture);
+    alpha == Alpha::over_black ? put_over_black(picture) : premultiply(picture, picture);
     return turned(std::move(picture), orientation);
   });
 }
@@ -263,10 +290,19 @@ Result<GreyPicture> read_grey_png(std::string_view bytes, const std::filesystem:
 
 }  // namespace
 
-Result<Texture> read_picture(const std::filesystem::path& file) {
+static Result<Texture> read_picture_as(Alpha alpha, const std::filesystem::path& file) {
   const auto bytes = read_input(file, kMostPicture);
   if (!bytes) return fail_in("picture", bytes.error());
-  return bytes->starts_with(kPngSignature) ? read_png(*bytes, file) : read_jpeg(*bytes, file);
+  return bytes->starts_with(kPngSignature) ? read_png(*bytes, file, alpha)
+                                           : read_jpeg(*bytes, file);
+}
+
+Result<Texture> read_picture(const std::filesystem::path& file) {
+  return read_picture_as(Alpha::over_black, file);
+}
+
+Result<Texture> read_premultiplied_picture(const std::filesystem::path& file) {
+  return read_picture_as(Alpha::premultiplied, file);
 }
 
 Result<GreyPicture> read_camera_picture(const std::filesystem::path& file, int used_bits) {
