@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <vector>
 
 #include "config/sections/process.hpp"
 #include "config/settings/field.hpp"
@@ -18,6 +19,7 @@ struct Content {
   int height_px = 400;
   double shading = 0.0;
   bool smooth = true;
+  std::vector<double> gravity{0, 1, 0};
   Process process{.wait = ipc::Wait::futex};
 };
 
@@ -47,6 +49,10 @@ void describe(Visitor& visitor, Content& content) {
       "smooth", content.smooth,
       "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "
       "in each frame, but fine lines break up and edges have steps.");
+  visitor.field("gravity", content.gravity, between(-1, 1),
+                "Down, for content that reacts to it: a direction in the space of the camera, x to "
+                "the right in its image, y down, z away from it. [0, 0, 1] for a camera that looks "
+                "down from above.");
   visitor.section("process", content.process, "The process of the service.");
 }
 

@@ -226,4 +226,10 @@ Result<void> Chain::set_in(Element& element, std::string_view name, std::string_
   return {};
 }
 
+Needs Chain::needs() const {
+  Needs all;
+  for (const auto& element : elements_) all |= element.source->needs();
+  return all;
+}
+
 }  // namespace handcast::content

@@ -35,6 +35,8 @@ class Chain {
   /// that the picture has changed.
   Result<bool> draw(const Moment& moment, renderer::Texture& out);
 
+  /// What its elements need of each moment.
+  Needs needs() const;
   /// What can be set; if there are several elements, with the number of the element (from 1) and a
   /// point before each name: "2.speed".
   std::vector<Parameter> parameters() const;

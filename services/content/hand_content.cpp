@@ -61,6 +61,8 @@ void HandContent::obey(const msg::ContentCommand& command) {
     note_fault(shown.error());
 }
 
+Needs HandContent::needs() const { return mixer_.needs(); }
+
 void HandContent::note_fault(const Error& error) {
   if (state_.fault.view() == error.what) return;
   state_.fault.set(error.what);

@@ -144,4 +144,12 @@ Chain* Mixer::chain() {
   return now_ ? &now_->chain : nullptr;
 }
 
+Needs Mixer::needs() const {
+  Needs all;
+  for (const auto* shown : {&now_, &next_})
+    if (*shown) all |= (*shown)->chain.needs();
+  if (transition_) all |= transition_->needs();
+  return all;
+}
+
 }  // namespace handcast::content

@@ -29,6 +29,8 @@ class Mixer {
 
   /// What is shown.
   const renderer::Texture& picture() const;
+  /// What the content needs of each moment.
+  Needs needs() const;
   bool is_changing() const { return next_.has_value(); }
   /// The chain that is shown, or will be after the change; null before the first one.
   Chain* chain();

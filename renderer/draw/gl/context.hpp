@@ -107,6 +107,7 @@ std::vector<DisplayCandidate> display_candidates(const Egl& egl);
   F(ENABLEVERTEXARRAYATTRIB, EnableVertexArrayAttrib)         \
   F(ENDQUERY, EndQuery)                                       \
   F(FENCESYNC, FenceSync)                                     \
+  F(GENERATETEXTUREMIPMAP, GenerateTextureMipmap)             \
   F(GETERROR, GetError)                                       \
   F(GETGRAPHICSRESETSTATUS, GetGraphicsResetStatus)           \
   F(GETPROGRAMINFOLOG, GetProgramInfoLog)                     \
@@ -115,6 +116,7 @@ std::vector<DisplayCandidate> display_candidates(const Egl& egl);
   F(GETSHADERINFOLOG, GetShaderInfoLog)                       \
   F(GETSHADERIV, GetShaderiv)                                 \
   F(GETSTRING, GetString)                                     \
+  F(GETUNIFORMLOCATION, GetUniformLocation)                   \
   F(LINKPROGRAM, LinkProgram)                                 \
   F(MAPNAMEDBUFFERRANGE, MapNamedBufferRange)                 \
   F(MEMORYBARRIER, MemoryBarrier)                             \
@@ -126,8 +128,12 @@ std::vector<DisplayCandidate> display_candidates(const Egl& egl);
   F(PIXELSTOREI, PixelStorei)                                 \
   F(PROVOKINGVERTEX, ProvokingVertex)                         \
   F(PROGRAMUNIFORM1I, ProgramUniform1i)                       \
+  F(PROGRAMUNIFORM1F, ProgramUniform1f)                       \
   F(PROGRAMUNIFORM1UI, ProgramUniform1ui)                     \
   F(PROGRAMUNIFORM2F, ProgramUniform2f)                       \
+  F(PROGRAMUNIFORM2FV, ProgramUniform2fv)                     \
+  F(PROGRAMUNIFORM3FV, ProgramUniform3fv)                     \
+  F(PROGRAMUNIFORM4FV, ProgramUniform4fv)                     \
   F(PROGRAMUNIFORM4I, ProgramUniform4i)                       \
   F(READPIXELS, ReadPixels)                                   \
   F(SCISSOR, Scissor)                                         \
