@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/sections/process.hpp"
 #include "config/settings/field.hpp"
@@ -161,6 +162,7 @@ struct Content {
   std::string right = "builtin:atlas";
   double shading = 0.0;
   bool smooth = true;
+  std::vector<double> gravity{0, 1, 0};
 };
 
 template <class Visitor>
@@ -178,6 +180,10 @@ void describe(Visitor& visitor, Content& content) {
       "smooth", content.smooth,
       "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "
       "in each frame, but fine lines break up and edges have steps.");
+  visitor.field("gravity", content.gravity, between(-1, 1),
+                "Down, for content that reacts to it: a direction in the space of the camera, x to "
+                "the right in its image, y down, z away from it. [0, 0, 1] for a camera that looks "
+                "down from above.");
 }
 
 /// [hand]

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <ctime>
 #include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <memory>
@@ -12,8 +13,10 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/calibration.hpp"
 #include "config/content_chain.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/shm/segment.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 
@@ -32,18 +35,30 @@ struct HandState {
   glm::vec3 palm_normal{0, 0, -1};  ///< out of the palm, unit length
   glm::vec3 velocity_m_s{0};        ///< of the palm
   /// @}
+  /// Smooth functions of the joints, for hands of any size: see derive().
+  /// @{
   float pinch = 0;   ///< 1: the tips of thumb and index finger touch; 0: 6 cm or more apart
   float spread = 0;  ///< 1: the fingers are spread; 0: they lie side by side
   float curl = 0;    ///< 1: a fist; 0: a flat hand
+  /// @}
   /// Gravity in the axes of the wrist (x to the right, y out of the back, z to the arm), unit
   /// length.
   glm::vec3 gravity{0, 0, 1};
   /// The mesh that is drawn, and its vertices as they are now: camera space, m, and unit normals.
-  /// Borrowed until the next moment; empty without a hand.
+  /// Borrowed until the next moment. Vertices are empty without a hand, and if no source needs them
+  /// (Needs::surface).
   /// @{
   const renderer::HandMesh* mesh = nullptr;
   std::span<const glm::vec3> positions_m, normals;
   /// @}
+};
+
+/// What the camera saw last.
+struct CameraView {
+  renderer::TimedImage image;
+  const calib::CameraModel* lens = nullptr;  ///< never null
+  const HandState* hand =
+      nullptr;  ///< that wears the content, when the image was taken; never null
 };
 
 /// What a source draws for.
@@ -56,6 +71,14 @@ struct Moment {
   double day_s = 0;                  ///< seconds since midnight, local time
   const HandState* hand = nullptr;   ///< that wears the content; never null
   const HandState* other = nullptr;  ///< the person's other hand; never null
+  /// Null if there is no image, or no source needs it (Needs::camera).
+  const CameraView* camera = nullptr;
+};
+
+/// What a source uses of a moment that costs time to provide.
+struct Needs {
+  bool surface = false;  ///< HandState::positions_m and normals, of all hands
+  bool camera = false;   ///< Moment::camera, with the surface of its hand
 };
 
 /// What can be changed while a source runs.
@@ -86,6 +109,8 @@ class Source {
   /// How many pictures it is given: 0 draws by itself, 1 is a filter, 2 is a transition (from the
   /// first to the second, by Moment::progress).
   virtual int inputs() const { return 0; }
+  /// What it uses, the same as long as it is open.
+  virtual Needs needs() const { return {}; }
   /// Draws into `out`, which has the size of the opening and the picture of the last call. Returns
   /// false if the picture is still the same; never for another input. Errors: bad_data (the
   /// picture is lost, the next one may come), disconnected and unavailable (open it again),
@@ -114,6 +139,8 @@ struct Opening {
   /// The hands that are drawn, left and right: for their layouts. Outlive the source.
   std::array<const renderer::HandMesh*, 2> meshes{};
   Side side = Side::left;  ///< the hand that wears it
+  /// Gives the ring of a stream of the rig ("guest.left"). Empty: there is no rig.
+  std::function<Result<ipc::Segment>(std::string_view stream)> ring{};
 };
 
 /// A kind of source.

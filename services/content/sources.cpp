@@ -10,24 +10,10 @@
 
 namespace handcast::content {
 
-Result<std::unique_ptr<Source>> open_isf(const Opening&);
-Result<std::unique_ptr<Source>> open_shadertoy(const Opening&);
-Result<std::unique_ptr<Source>> open_look(const Opening&);
-Result<std::unique_ptr<Source>> open_picture(const Opening&);
-Result<std::unique_ptr<Source>> open_film(const Opening&);
-Result<std::unique_ptr<Source>> open_capture(const Opening&);
-Result<std::unique_ptr<Source>> open_text(const Opening&);
-Result<std::unique_ptr<Source>> open_pattern(const Opening&);
+Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
 
 static constexpr SourceKind kKinds[] = {
-    {"look", "One of handcast's own looks, by its name.", open_look},
-    {"isf", "A shader in the Interactive Shader Format, version 2.", open_isf},
-    {"shadertoy", "A shader by the conventions of Shadertoy.", open_shadertoy},
-    {"picture", "A PNG or JPEG file.", open_picture},
-    {"film", "A film, or a stream by its address.", open_film},
-    {"capture", "A video device: a camera, or another program by v4l2loopback.", open_capture},
-    {"text", "Text in any script.", open_text},
-    {"pattern", "A pattern of the hand's own: atlas, checker, skeleton, white.", open_pattern},
+    {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
 };
 
 std::span<const SourceKind> source_kinds() { return kKinds; }
