@@ -89,6 +89,14 @@ void check_currents(const Dlp& dlp, std::string_view file, Faults& faults) {
   check("blue", dlp.blue);
 }
 
+void check_gravity(const std::vector<double>& gravity, std::string_view file, Faults& faults) {
+  const bool is_direction = gravity.size() == 3 && std::ranges::any_of(gravity, [](double part) {
+                              return std::abs(part) > 0.01;
+                            });
+  if (!is_direction)
+    faults.add(fmt::format("{}: content.gravity: a direction is needed, as in [0, 1, 0]", file));
+}
+
 /// Checks conditions between settings, and those that their ranges do not express.
 void check_together(const Rig& rig, std::string_view file, Faults& faults) {
   if (!is_rig_name(rig.name))
@@ -96,6 +104,7 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
                            kRigNameRule));
   check_cores(rig, file, faults);
   check_currents(rig.dlp, file, faults);
+  check_gravity(rig.content.gravity, file, faults);
   const auto& correct = rig.cascade.correct;
   if (correct.bone_short_px >= correct.bone_long_px)
     faults.add(

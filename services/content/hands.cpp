@@ -59,7 +59,7 @@ float spread_of(const HandState& hand) {
     return glm::distance(hand.joints_m[kKnuckles.front() + from_knuckle],
                          hand.joints_m[kKnuckles.back() + from_knuckle]);
   };
-  return smooth(0.9f, 1.5f, ratio(across(kFromKnuckleToPip), across(0)));
+  return smooth(1.05f, 1.5f, ratio(across(kFromKnuckleToPip), across(0)));
 }
 
 float pinch_of(const HandState& hand) {

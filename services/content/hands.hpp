@@ -26,7 +26,7 @@ using BothHands = std::array<HandState, 2>;
 /// up to its first and 1 from its second number on.
 ///
 /// - pinch: 1 - S(0.2, 0.65) of the distance of the tips of thumb and index finger by L.
-/// - spread: S(0.9, 1.5) of the distance of the middle joints (PIP) of index and little finger by
+/// - spread: S(1.05, 1.5) of the distance of the middle joints (PIP) of index and little finger by
 ///   that of their knuckles. Fingers that bend count as closed.
 /// - curl: 1 - S(0.45, 0.95) of the mean, over the fingers without the thumb, of the distance from
 ///   the wrist to the tip by the length of the way along the joints.

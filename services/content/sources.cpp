@@ -10,14 +10,20 @@
 
 namespace handcast::content {
 
-Result<std::unique_ptr<Source>> open_picture(const Opening&);
+Result<std::unique_ptr<Source>> open_isf(const Opening&);
+Result<std::unique_ptr<Source>> open_look(const Opening&);
 Result<std::unique_ptr<Source>> open_pattern(const Opening&);
+Result<std::unique_ptr<Source>> open_picture(const Opening&);
+Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
 
 static constexpr SourceKind kKinds[] = {
+    {"look", "One of handcast's own looks, by its name.", open_look},
     {"picture", "A PNG or JPEG file.", open_picture},
     {"pattern",
      "A pattern of the hand: atlas, checker, skeleton, white, seams, joints, bones, bars.",
      open_pattern},
+    {"isf", "A shader in the Interactive Shader Format, version 2.", open_isf},
+    {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
 };
 
 std::span<const SourceKind> source_kinds() { return kKinds; }

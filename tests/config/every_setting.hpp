@@ -43,8 +43,10 @@ inline void change(const Setting& setting) {
           if constexpr (std::is_same_v<T, double>)
             *value =
                 (*value + setting.range.min) / 2 + (setting.range.max - setting.range.min) / 3e6;
-          if constexpr (std::is_same_v<T, std::vector<double>>)
+          if constexpr (std::is_same_v<T, std::vector<double>>) {
+            if (setting.name() == "gravity") value->pop_back();  // always three numbers
             value->push_back(setting.name() == "cores" ? 1 : 0.1);
+          }
           if constexpr (std::is_same_v<T, std::vector<std::string>>)
             value->push_back("a, \"quoted\" [text] = 1");
           if constexpr (std::is_same_v<T, std::string>)

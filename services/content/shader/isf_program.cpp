@@ -106,7 +106,7 @@ std::string fragment_epilogue(const std::string& output) {
       output);
 }
 
-bool is_still(const std::set<std::string, std::less<>>& words, const IsfHead& head,
+bool depends_on_settings_alone(const std::set<std::string, std::less<>>& words, const IsfHead& head,
               const HandView& hands) {
   for (const auto* const word : {"TIME", "TIMEDELTA", "DATE", "FRAMEINDEX"})
     if (words.contains(word)) return false;
@@ -154,7 +154,7 @@ Result<IsfProgram> IsfProgram::make(Graphics& graphics, const fs::path& file,
   words.insert(vertex.glsl.words.begin(), vertex.glsl.words.end());
   made.hands = std::make_unique<HandView>(words, opening);
   made.images = images_of(made.head);
-  made.is_still = is_still(words, made.head, *made.hands);
+  made.is_still = depends_on_settings_alone(words, made.head, *made.hands);
 
   const auto common = std::string(kBuiltIns) + declarations_of(made.head, made.images) +
                       made.hands->declarations();

@@ -26,18 +26,22 @@ namespace fs = std::filesystem;
 constexpr int kSettling = 20;
 constexpr double kRate_hz = 30;  ///< at which content is drawn
 
-/// One content of the page.
-struct Entry {
-  std::string title, file;
-  int width_px, height_px;
-};
-
 /// "lava", "film:a.mp4" as the name of a file.
 std::string file_name_of(const std::string& content) {
   std::string name = content;
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
   return name.substr(0, 60) + ".png";
+}
+
+std::string escaped(const std::string& text) {
+  std::string html;
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    const bool is_plain = code >= 0x20 && c != '<' && c != '>' && c != '&' && c != '"';
+    html += is_plain ? std::string(1, c) : fmt::format("&#{};", code);
+  }
+  return html;
 }
 
 /// The part of a picture within `from`, in another size, each pixel the mean of what it covers.
@@ -77,6 +81,12 @@ figcaption { padding: .6rem .9rem; font-family: ui-monospace, monospace; font-si
 
 }  // namespace
 
+/// One content of the page.
+struct Gallery::Entry {
+  std::string title, file;
+  int width_px, height_px;
+};
+
 struct Gallery::Parts {
   Wanted wanted;
   config::Rig rig;
@@ -110,7 +120,6 @@ struct Gallery::Parts {
            shown * wanted.frames / all != (shown - 1 + all) * wanted.frames / all - wanted.frames;
   }
   void find_region();
-  Entry write_strip(const std::string& content, const renderer::Texture& strip) const;
 };
 
 void Gallery::Parts::find_region() {
@@ -123,15 +132,6 @@ void Gallery::Parts::find_region() {
   constexpr int kMargin_px = 20;
   region = region.grown(kMargin_px)
                .within(calibration.projector.width_px, calibration.projector.height_px);
-}
-
-std::vector<std::string> all_looks() {
-  std::vector<std::string> names;
-  std::error_code absent;
-  for (const auto& file : fs::directory_iterator(content::looks_folder(), absent))
-    if (file.path().extension() == ".fs") names.push_back(file.path().stem().string());
-  std::ranges::sort(names);
-  return names;
 }
 
 Result<Gallery> Gallery::open(const Wanted& wanted) {
@@ -222,7 +222,7 @@ Result<fs::path> Gallery::write_page() const {
         "<div class=\"strip\" role=\"img\" aria-label=\"{2}\" style=\"width: {3}px; height: {4}px; "
         "background-image: url('{5}'); animation: s{0} {6:.1f}s steps({7}) infinite "
         "alternate\"></div><figcaption>{2}</figcaption></figure>\n",
-        i, entry.width_px * all.wanted.frames, printable(entry.title), entry.width_px,
+        i, entry.width_px * all.wanted.frames, escaped(entry.title), entry.width_px,
         entry.height_px, entry.file, all.wanted.seconds, all.wanted.frames);
   }
   page += "</main></html>\n";

@@ -18,9 +18,6 @@ struct Wanted {
   int width_px = 320;  ///< of a picture
 };
 
-/// The names of handcast's looks, sorted.
-std::vector<std::string> all_looks();
-
 /// Contents on the moving hands of the twin, and a page of them. One thread.
 class Gallery {
  public:
@@ -36,6 +33,7 @@ class Gallery {
   Result<std::filesystem::path> write_page() const;
 
  private:
+  struct Entry;
   struct Parts;
   explicit Gallery(std::unique_ptr<Parts> parts);
   std::unique_ptr<Parts> parts_;

@@ -10,6 +10,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "services/content/looks_folder.hpp"
 #include "services/lab/gallery/gallery.hpp"
 
 namespace handcast::gallery {
@@ -25,7 +26,7 @@ int complain(const Error& error) {
 }
 
 int write(const Wanted& wanted) {
-  const auto looks = wanted.sources.empty() ? all_looks() : wanted.sources;
+  const auto looks = wanted.sources.empty() ? content::look_names() : wanted.sources;
   if (looks.empty())
     return complain({Errc::bad_config, "there are no looks in this installation; name a SOURCE"});
   auto stage = Gallery::open(wanted);

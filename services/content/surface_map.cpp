@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/content/surface_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderer/draw/cpu/nearest_pixel.hpp"
+
+namespace handcast::content {
+namespace {
+
+constexpr int kWrist = 1;
+
+double cross_of(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// Calls `take(x, y, parts)` for each texel whose centre lies in a triangle of the texture.
+template <class Take>
+void for_each_in(const std::array<glm::dvec2, 3>& at, int width, int height, const Take& take) {
+  const double area = cross_of(at[1] - at[0], at[2] - at[0]);
+  if (area == 0) return;
+  const glm::dvec2 low = glm::min(at[0], glm::min(at[1], at[2])),
+                   high = glm::max(at[0], glm::max(at[1], at[2]));
+  const int x0 = std::max(0, static_cast<int>(std::ceil(low.x))),
+            x1 = std::min(width - 1, static_cast<int>(std::floor(high.x))),
+            y0 = std::max(0, static_cast<int>(std::ceil(low.y))),
+            y1 = std::min(height - 1, static_cast<int>(std::floor(high.y)));
+  constexpr double kSlack = 1e-9;  // a texel on a shared edge must not be missed
+  for (int y = y0; y <= y1; ++y)
+    for (int x = x0; x <= x1; ++x) {
+      const glm::dvec2 p(x, y);
+      const double a = cross_of(at[2] - at[1], p - at[1]) / area,
+                   b = cross_of(at[0] - at[2], p - at[2]) / area, c = 1 - a - b;
+      if (a < -kSlack || b < -kSlack || c < -kSlack) continue;
+      take(x, y, std::array{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)});
+    }
+}
+
+}  // namespace
+
+SurfaceMap::SurfaceMap(const renderer::HandMesh& hand, int width, int height) {
+  renderer::Image<SurfaceTexel> all(width, height);
+  renderer::Image<std::uint8_t> on(width, height), off(width, height, 1);
+  const glm::dvec2 size(width, height);
+  for (const auto& triangle : hand.triangles) {
+    std::array<glm::dvec2, 3> at;  // whole numbers at the centres of texels
+    for (std::size_t k = 0; k < 3; ++k) at[k] = glm::dvec2(hand.uv[triangle[k]]) * size - 0.5;
+    for_each_in(at, width, height, [&](int x, int y, const std::array<float, 3>& parts) {
+      all.at(x, y) = {static_cast<std::uint32_t>(y * width + x), triangle, parts};
+      on.at(x, y) = 1;
+      off.at(x, y) = 0;
+    });
+  }
+  for (std::size_t i = 0; i < on.pixels().size(); ++i) {
+    if (on.pixels()[i])
+      texels_.push_back(all.pixels()[i]);
+    else
+      empty_.push_back(static_cast<std::uint32_t>(i));
+  }
+  renderer::cpu::NearestPixel nearest;
+  for (const auto& way : nearest.find(on.view(), off.view(), kPadding))
+    copies_.push_back({static_cast<std::uint32_t>(way.y * width + way.x),
+                       static_cast<std::uint32_t>((way.y + way.dy) * width + way.x + way.dx)});
+}
+
+void SurfaceMap::pad(renderer::Texture& texture) const {
+  auto& texels = texture.pixels();
+  for (const auto index : empty_) texels[index] = 0;
+  for (const auto& [to, from] : copies_) texels[to] = texels[from];
+}
+
+std::vector<glm::vec3> rest_positions_mm(const renderer::HandMesh& hand) {
+  const glm::mat4 wrist_from_model = glm::inverse(hand.rest[kWrist]);
+  std::vector<glm::vec3> places;
+  for (const auto& position : hand.positions)
+    places.push_back(1000.f * glm::vec3(wrist_from_model * glm::vec4(position, 1)));
+  return places;
+}
+
+std::vector<glm::vec3> rest_normals(const renderer::HandMesh& hand) {
+  const glm::mat3 wrist_from_model = glm::transpose(glm::mat3(hand.rest[kWrist]));
+  std::vector<glm::vec3> normals;
+  for (const auto& normal : hand.normals) normals.push_back(wrist_from_model * normal);
+  return normals;
+}
+
+std::uint32_t texel_of(const glm::vec4& colour) {
+  const float alpha = std::clamp(colour.a, 0.f, 1.f);
+  const glm::vec4 values(glm::clamp(glm::vec3(colour), 0.f, 1.f) * alpha, alpha);
+  std::uint32_t texel = 0;
+  for (int i = 3; i >= 0; --i)
+    texel = texel << 8 | static_cast<std::uint32_t>(std::lround(255 * values[i]));
+  return texel;
+}
+
+}  // namespace handcast::content
