@@ -150,8 +150,10 @@ class AvColourFilm final : public rr::ColourFilm {
   }
 
   void begin_waiting() { deadline_ = Clock::now() + opening_.patience; }
-  bool is_too_late() const {
-    return is_over_ || (opening_.kind != Kind::file && Clock::now() > deadline_);
+  /// Once true, it stays so: what FFmpeg has read until then may be half a packet.
+  bool is_too_late() {
+    if (opening_.kind != Kind::file && Clock::now() > deadline_) was_too_late_ = true;
+    return is_over_ || was_too_late_;
   }
 
   Result<void> open_input() {
@@ -245,7 +247,7 @@ class AvColourFilm final : public rr::ColourFilm {
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
         continue;
       }
-      if (got < 0 && opening_.kind != Kind::file) return why_silent(got);
+      if ((got < 0 || was_too_late_) && opening_.kind != Kind::file) return why_silent(got);
       is_ending_ = got < 0;
       // A damaged packet costs its frame only.
       (void)avcodec_send_packet(codec_.get(), is_ending_ ? nullptr : packet_.get());
@@ -253,7 +255,7 @@ class AvColourFilm final : public rr::ColourFilm {
     }
   }
 
-  Result<void> why_silent(int error) const {
+  Result<void> why_silent(int error) {
     if (is_too_late())
       return fail(Errc::timeout,
                   fmt::format("'{}' has sent nothing for {} s", opening_.address,
@@ -303,6 +305,7 @@ class AvColourFilm final : public rr::ColourFilm {
   std::optional<std::int64_t> first_stamp_;  ///< in the unit of the stream
   std::int64_t last_ns_ = -1;
   bool is_ending_ = false;  ///< the decoder has all packets
+  bool was_too_late_ = false;
 };
 
 }  // namespace

@@ -87,6 +87,10 @@ pkg_check_modules(cairo QUIET IMPORTED_TARGET cairo)
 handcast_found(found cairo_FOUND)
 handcast_feature(CAIRO "pictures of a running rig, handcast preview (libcairo2-dev)" ${found})
 
+pkg_check_modules(pangocairo QUIET IMPORTED_TARGET pangocairo)
+handcast_found(found pangocairo_FOUND)
+handcast_feature(PANGO "text as content (libpango1.0-dev)" ${found})
+
 find_package(glfw3 QUIET)
 find_package(OpenGL QUIET COMPONENTS OpenGL)
 find_package(X11 QUIET)
