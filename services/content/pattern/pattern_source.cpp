@@ -163,11 +163,22 @@ void paint_weights(const HandMesh& hand, int joint, Texture& out) {
   });
 }
 
-/// The same for a value 0..1 of each joint, on the skin that it moves most.
-void paint_bars(const HandMesh& hand, const std::array<double, renderer::kJoints>& values,
-                Texture& out) {
-  paint(hand, out,
-        [&](const renderer::ChartTexel& texel, int, int) { return heat(values[texel.joint]); });
+/// The joint that moves each part of the skin most, plus 1, as the red of a picture; 0: none.
+Texture joints_of(const HandMesh& hand, int width, int height) {
+  Texture joints(width, height);
+  paint(hand, joints, [](const renderer::ChartTexel& texel, int, int) {
+    return Colour(static_cast<float>(texel.joint + 1) / 255, 0, 0);
+  });
+  return joints;
+}
+
+/// The same as paint_weights() for a value 0..1 of each joint, on the skin that it moves most.
+void paint_bars(const Texture& joints, const std::array<double, kJoints>& values, Texture& out) {
+  std::array<std::uint32_t, 256> colours;
+  colours.fill(0xff000000u);
+  for (int joint = 0; joint < kJoints; ++joint) colours[joint + 1] = packed(heat(values[joint]));
+  std::ranges::transform(joints.pixels(), out.pixels().begin(),
+                         [&](std::uint32_t pixel) { return colours[pixel & 255]; });
 }
 
 constexpr std::string_view kNames[] = {"atlas", "checker", "skeleton", "white",
@@ -233,7 +244,8 @@ class PatternSource final : public SettableSource {
       std::array<double, kJoints> values;
       for (int joint = 0; joint < kJoints; ++joint)
         values[joint] = number(fmt::format("value{}", joint));
-      paint_bars(*hand_, values, out);
+      if (joints_.width() == 0) joints_ = joints_of(*hand_, out.width(), out.height());
+      paint_bars(joints_, values, out);
     } else {
       const auto painted = renderer::load_content("builtin:" + name_, *hand_);
       if (!painted) return tl::make_unexpected(painted.error());
@@ -245,6 +257,7 @@ class PatternSource final : public SettableSource {
  private:
   std::string name_;
   const HandMesh* hand_;  ///< null only for white
+  Texture joints_;        ///< of bars: joints_of()
 };
 
 }  // namespace
