@@ -65,15 +65,18 @@ static void publish_state(Contents& all) {
   all.states.publish(std::move(state));
 }
 
-/// Draws what is due for both hands. A hand that is not there needs no new pictures.
-static void draw(Contents& all, std::int64_t time_ns) {
+/// Draws what is due for both hands. A hand that is not there needs no new pictures. Returns whether
+/// a picture was new.
+static bool draw(Contents& all, std::int64_t time_ns) {
   const bool needs_surface = std::ranges::any_of(
       all.worn, [](const auto& worn) { return worn.needs().surface || worn.needs().camera; });
   all.hands.needs_surface(needs_surface);
   const auto hands = all.hands.at(time_ns);
+  bool is_new = false;
   for (std::size_t i = 0; i < all.worn.size(); ++i)
     if (hands[i].is_there || all.worn[i].is_due())
-      all.worn[i].draw(hands[i], hands[1 - i], time_ns);
+      is_new |= all.worn[i].draw(hands[i], hands[1 - i], time_ns);
+  return is_new;
 }
 
 /// Draws the contents of the hands content.rate_hz times a second, until the service ends.
@@ -95,6 +98,7 @@ static void run_content(service::Context& context) {
   context.ready();
   const auto period_ns = seconds_to_ns(1 / rig.content.rate_hz);
   std::int64_t due_ns = now_ns(), state_ns = due_ns;
+  std::uint64_t pictures = 0;
   while (context.running()) {
     // A command is obeyed at once.
     const bool is_changed =
@@ -102,9 +106,9 @@ static void run_content(service::Context& context) {
     const std::int64_t begin_ns = now_ns();
     if (begin_ns < due_ns && !is_changed) continue;
     take_poses(context, all);
-    draw(all, begin_ns + period_ns);
-    context.mark({all.published, begin_ns},
-                 std::array{msg::StageMark{msg::Stage::draw, 0, begin_ns, now_ns()}});
+    if (draw(all, begin_ns + period_ns))
+      context.mark({++pictures, begin_ns},
+                   std::array{msg::StageMark{msg::Stage::draw, 0, begin_ns, now_ns()}});
     due_ns = std::max(due_ns + period_ns, now_ns());
     if (begin_ns < state_ns && !is_changed) continue;
     publish_state(all);

@@ -12,6 +12,10 @@ namespace handcast::content {
 
 Result<std::unique_ptr<Source>> open_isf(const Opening&);
 Result<std::unique_ptr<Source>> open_look(const Opening&);
+Result<std::unique_ptr<Source>> open_film(const Opening&);
+Result<std::unique_ptr<Source>> open_capture(const Opening&);
+Result<std::unique_ptr<Source>> open_text(const Opening&);
+Result<std::unique_ptr<Source>> open_clock(const Opening&);
 Result<std::unique_ptr<Source>> open_pattern(const Opening&);
 Result<std::unique_ptr<Source>> open_picture(const Opening&);
 Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
@@ -19,6 +23,12 @@ Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
 static constexpr SourceKind kKinds[] = {
     {"look", "One of handcast's own looks, by its name.", open_look},
     {"picture", "A PNG or JPEG file.", open_picture},
+    {"film", "A film, or a stream by its address.", open_film},
+    {"capture", "A video device: a camera, or another program by v4l2loopback.", open_capture},
+#ifdef HANDCAST_WITH_PANGO
+    {"text", "Text in any script.", open_text},
+    {"clock", "The time, e.g. clock:%H:%M.", open_clock},
+#endif
     {"pattern",
      "A pattern of the hand: atlas, checker, skeleton, white, seams, joints, bones, bars.",
      open_pattern},
