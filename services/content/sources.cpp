@@ -10,10 +10,16 @@
 
 namespace handcast::content {
 
+Result<std::unique_ptr<Source>> open_paint(const Opening&);
+Result<std::unique_ptr<Source>> open_hand(const Opening&);
 Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
+Result<std::unique_ptr<Source>> open_program(const Opening&);
 
 static constexpr SourceKind kKinds[] = {
+    {"paint", "Drawn on this hand by the index finger of the other one.", open_paint},
+    {"hand", "What the camera sees of the hand.", open_hand},
     {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
+    {"program", "The pictures of any other program, by handcast.h.", open_program},
 };
 
 std::span<const SourceKind> source_kinds() { return kKinds; }

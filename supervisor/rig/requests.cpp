@@ -13,6 +13,7 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
+#include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
@@ -160,9 +161,13 @@ void give_status(LiveRig& rig, const Reply& reply) {
   reply(answer);
 }
 
-/// Only the ring that no service writes to may be changed by a tool; the others not even by
+/// Only the rings that no service writes to may be changed by a tool; the others not even by
 /// accident.
-int access_to(std::string_view stream) { return stream == msg::kTestPictures ? O_RDWR : O_RDONLY; }
+int access_to(std::string_view stream) {
+  const bool is_for_guests =
+      std::ranges::find(msg::kGuestPictures, stream) != msg::kGuestPictures.end();
+  return is_for_guests || stream == msg::kTestPictures ? O_RDWR : O_RDONLY;
+}
 
 void give_rings(const LiveRig& rig, const Reply& reply) {
   auto answer = success();
