@@ -61,6 +61,17 @@ TEST_F(PaintTest, ATipOnTheSkinLeavesASpotOfTheSizeOfTheBrush) {
   EXPECT_FALSE(draw()) << "the tip rests";
 }
 
+TEST_F(PaintTest, AWideBrushDoesNotReachThroughAFinger) {
+  const glm::vec3 finger = hands.hand.joints_m[8], out_of_back(0, 0, -0.02f);
+  const auto above = hands.vertex_near(finger + out_of_back),
+             below = hands.vertex_near(finger - out_of_back);
+  ASSERT_TRUE(source->set("size", "60"));
+  hands.touch(above);
+  draw();
+  EXPECT_NE(on(above), 0u);
+  EXPECT_EQ(on(below), 0u);
+}
+
 TEST_F(PaintTest, ATipThatHoversDoesNotPaint) {
   hands.touch(hands.middle(true), 0.025f);
   draw();
