@@ -228,8 +228,7 @@ std::string_view content_kind_of(std::string_view file) {
 }
 
 bool is_content_file(const ContentElement& element) {
-  const bool is_address =
-      element.kind == "film" && element.what.find("://") != std::string::npos;
+  const bool is_address = element.kind == "film" && element.what.find("://") != std::string::npos;
   return is_file_kind(element.kind) && !element.what.empty() && !is_address;
 }
 

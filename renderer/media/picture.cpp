@@ -204,14 +204,12 @@ Result<Texture> read_png(std::string_view bytes, const std::filesystem::path& fi
   const int orientation = orientation_of(opened->chunks->exif);
   if (const auto profile = profile_of(*opened, file))
     return decode_as<WidePixel>(SPNG_FMT_RGBA16, *opened, file).map([&](auto&& picture) {
-      const auto alphas = alphas_of(picture, alpha, [](const WidePixel& pixel) {
-        return (pixel[3] + 128u) / 257;
-      });
+      const auto alphas =
+          alphas_of(picture, alpha, [](const WidePixel& pixel) { return (pixel[3] + 128u) / 257; });
       return turned(with_alpha(srgb_over_black(picture, *profile), alphas), orientation);
     });
   return decode_as<std::uint32_t>(SPNG_FMT_RGBA8, *opened, file).map([&](Texture&& picture) {
-    const auto alphas =
-        alphas_of(picture, alpha, [](std::uint32_t pixel) { return pixel >> 24; });
+    const auto alphas = alphas_of(picture, alpha, [](std::uint32_t pixel) { return pixel >> 24; });
     put_over_black(picture);
     picture = with_alpha(std::move(picture), alphas);
     return turned(std::move(picture), orientation);

@@ -69,9 +69,10 @@ void HandContent::note_fault(const Error& error) {
   log::warning("{}: {}", name_of(like_.side), printable(error.what));
 }
 
-bool HandContent::draw(const HandState& hand, const HandState& other, std::int64_t time_ns) {
+bool HandContent::draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
+                       const CameraView* camera) {
   const std::int64_t begin_ns = now_ns();
-  const auto drawn = mixer_.draw(hand, other, ns_to_seconds(time_ns));
+  const auto drawn = mixer_.draw(hand, other, ns_to_seconds(time_ns), camera);
   if (!drawn) note_fault(drawn.error());
   const bool is_first = std::exchange(is_new_, false) || state_.pictures == 0;
   if (!drawn.value_or(false) && !is_first) return false;

@@ -23,8 +23,9 @@ class HandContent {
   /// fault in state(), and the content of before goes on.
   void obey(const msg::ContentCommand& command);
   /// Draws the picture for a time, CLOCK_MONOTONIC, and publishes it if it is new. Returns whether
-  /// it is.
-  bool draw(const HandState& hand, const HandState& other, std::int64_t time_ns);
+  /// it is. `camera`: see Moment.
+  bool draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
+            const CameraView* camera);
 
   /// What the content needs of each moment.
   Needs needs() const;

@@ -18,7 +18,10 @@ Result<std::unique_ptr<Source>> open_text(const Opening&);
 Result<std::unique_ptr<Source>> open_clock(const Opening&);
 Result<std::unique_ptr<Source>> open_pattern(const Opening&);
 Result<std::unique_ptr<Source>> open_picture(const Opening&);
+Result<std::unique_ptr<Source>> open_paint(const Opening&);
+Result<std::unique_ptr<Source>> open_hand(const Opening&);
 Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
+Result<std::unique_ptr<Source>> open_program(const Opening&);
 
 static constexpr SourceKind kKinds[] = {
     {"look", "One of handcast's own looks, by its name.", open_look},
@@ -33,7 +36,10 @@ static constexpr SourceKind kKinds[] = {
      "A pattern of the hand: atlas, checker, skeleton, white, seams, joints, bones, bars.",
      open_pattern},
     {"isf", "A shader in the Interactive Shader Format, version 2.", open_isf},
+    {"paint", "Drawn on this hand by the index finger of the other one.", open_paint},
+    {"hand", "What the camera sees of the hand.", open_hand},
     {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
+    {"program", "The pictures of any other program, by handcast.h.", open_program},
 };
 
 std::span<const SourceKind> source_kinds() { return kKinds; }

@@ -110,8 +110,7 @@ TEST(ContentChain, WhatIsPrintedIsReadAsTheSame) {
 }
 
 TEST(ContentChain, PlainContentIsPrintedWithoutQuotes) {
-  EXPECT_EQ(print_content(read("a film.mp4 speed=2 | tiger")),
-            "a film.mp4 speed=2 | tiger");
+  EXPECT_EQ(print_content(read("a film.mp4 speed=2 | tiger")), "a film.mp4 speed=2 | tiger");
 }
 
 TEST(ContentChain, ErrorsAreSentences) {

@@ -101,9 +101,9 @@ tl::unexpected<Error> compile_error(const UserStage& stage, const std::string& l
   if (message.text != kUserText)
     return fail(Errc::bad_config, fmt::format("{}: {}", name, readable(message.sentence)));
   const auto line = line_of(stage.original, message.line);
-  return fail(Errc::bad_config, fmt::format("{}:{}: {}{}{}", name, message.line,
-                                            readable(message.sentence), line.empty() ? "" : ": ",
-                                            line));
+  return fail(Errc::bad_config,
+              fmt::format("{}:{}: {}{}{}", name, message.line, readable(message.sentence),
+                          line.empty() ? "" : ": ", line));
 }
 
 Result<void> compile(Graphics& graphics, const gl::Program& program, GLenum kind,
