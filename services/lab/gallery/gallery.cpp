@@ -44,7 +44,8 @@ std::string escaped(const std::string& text) {
   return html;
 }
 
-/// The part of a picture within `from`, in another size, each pixel the mean of what it covers.
+/// The part of a picture within `from`, in another size, each pixel the mean of what it covers. What
+/// is beyond the picture is as its edge.
 void shrink_into(renderer::View<const std::uint32_t> picture, const renderer::Rect& from,
                  renderer::View<std::uint32_t> out) {
   for (int y = 0; y < out.height; ++y)
@@ -56,7 +57,11 @@ void shrink_into(renderer::View<const std::uint32_t> picture, const renderer::Re
       std::array<std::uint32_t, 3> sum{};
       for (int v = y0; v < y1; ++v)
         for (int u = x0; u < x1; ++u)
-          for (int c = 0; c < 3; ++c) sum[c] += picture.at(u, v) >> (8 * c) & 0xff;
+          for (int c = 0; c < 3; ++c)
+            sum[c] += picture.at(std::clamp(u, 0, picture.width - 1),
+                                 std::clamp(v, 0, picture.height - 1)) >>
+                          (8 * c) &
+                      0xff;
       const auto count = static_cast<std::uint32_t>((x1 - x0) * (y1 - y0));
       out.at(x, y) = 0xff000000u | sum[0] / count | sum[1] / count << 8 | sum[2] / count << 16;
     }
@@ -95,7 +100,8 @@ struct Gallery::Parts {
   content::Hands hands;
   HandStage stage;
   std::uint64_t next_sample = 0;
-  renderer::Rect region;  ///< of the hands in the whole motion, and a margin
+  glm::ivec2 size_px{0};                 ///< of what is kept of a picture
+  std::optional<glm::dvec2> middle_px;  ///< of it, smoothed
   std::vector<Entry> entries;
 
   /// The hands at a time of the motion. Times go on; rewind() begins again.
@@ -108,6 +114,7 @@ struct Gallery::Parts {
     hands = *content::Hands::load(rig, calibration);
     hands.needs_surface(true);
     next_sample = 0;
+    middle_px.reset();
   }
   std::int64_t time_ns(int step) const {
     return seconds_to_ns(0.5 + step / kRate_hz);
@@ -119,19 +126,30 @@ struct Gallery::Parts {
     return shown >= 0 &&
            shown * wanted.frames / all != (shown - 1 + all) * wanted.frames / all - wanted.frames;
   }
-  void find_region();
+  void find_size();
+  renderer::Rect followed();
 };
 
-void Gallery::Parts::find_region() {
+/// The size of a picture: the largest that a hand has in the motion, and a margin.
+void Gallery::Parts::find_size() {
   const renderer::Texture white(8, 5, 0xffffffff);
   rewind();
   for (int step = 0; step < steps(); step += 4) {
     stage.take(hands_at(time_ns(step)), {&white, &white});
-    region = region.joined(stage.region());
+    size_px = glm::max(size_px, glm::ivec2(stage.region().width(), stage.region().height()));
   }
-  constexpr int kMargin_px = 20;
-  region = region.grown(kMargin_px)
-               .within(calibration.projector.width_px, calibration.projector.height_px);
+  constexpr int kMargin_px = 12;
+  size_px += 2 * kMargin_px;
+}
+
+/// The part of the last picture that is kept: it follows the hands, but not their trembling.
+renderer::Rect Gallery::Parts::followed() {
+  const auto& region = stage.region();
+  const glm::dvec2 middle(0.5 * (region.x0 + region.x1), 0.5 * (region.y0 + region.y1));
+  constexpr double kShare = 0.2;
+  if (!region.empty()) middle_px = middle_px ? glm::mix(*middle_px, middle, kShare) : middle;
+  const glm::ivec2 first(middle_px.value_or(glm::dvec2(size_px) / 2.) - glm::dvec2(size_px) / 2.);
+  return {first.x, first.y, first.x + size_px.x, first.y + size_px.y};
 }
 
 Result<Gallery> Gallery::open(const Wanted& wanted) {
@@ -153,8 +171,8 @@ Result<Gallery> Gallery::open(const Wanted& wanted) {
                                                 .twin = std::move(*twin),
                                                 .hands = std::move(*hands),
                                                 .stage = HandStage(calibration)});
-  parts->find_region();
-  if (parts->region.empty())
+  parts->find_size();
+  if (parts->size_px.x < 40)
     return fail(Errc::bad_config, fmt::format("{}: no hand is seen", wanted.motion));
   return Gallery(std::move(parts));
 }
@@ -181,7 +199,7 @@ Result<double> Gallery::show(const std::string& content) {
     if (auto set = mixers.back().change(std::move(*opened), "cut", 0); !set)
       return tl::make_unexpected(set.error());
   }
-  const int width = all.wanted.width_px, height = width * all.region.height() / all.region.width();
+  const int width = all.wanted.width_px, height = width * all.size_px.y / all.size_px.x;
   renderer::Texture strip(width * all.wanted.frames, height);
   std::vector<double> took_ms;
   int kept = 0;
@@ -195,13 +213,13 @@ Result<double> Gallery::show(const std::string& content) {
       if (!drawn) return tl::make_unexpected(drawn.error());
       took_ms.push_back(ns_to_ms(now_ns() - begin_ns));
     }
+    const auto picture = all.stage.take(hands, {&mixers[0].picture(), &mixers[1].picture()});
+    const auto part = all.followed();
     if (!all.is_kept(step) || kept == all.wanted.frames) continue;
-    const auto picture =
-        all.stage.take(hands, {&mixers[0].picture(), &mixers[1].picture()});
     renderer::View<std::uint32_t> out = strip.view();
     out.data += width * kept++;
     out.width = width;
-    shrink_into(picture, all.region, out);
+    shrink_into(picture, part, out);
   }
   const Entry entry{content, file_name_of(content), width, height};
   const auto written = renderer::write_png(fs::path(all.wanted.folder) / entry.file, strip.view());
