@@ -14,6 +14,7 @@ Result<std::unique_ptr<Source>> open_isf(const Opening&);
 Result<std::unique_ptr<Source>> open_look(const Opening&);
 Result<std::unique_ptr<Source>> open_pattern(const Opening&);
 Result<std::unique_ptr<Source>> open_picture(const Opening&);
+Result<std::unique_ptr<Source>> open_shadertoy(const Opening&);
 Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
 
 static constexpr SourceKind kKinds[] = {
@@ -23,6 +24,7 @@ static constexpr SourceKind kKinds[] = {
      "A pattern of the hand: atlas, checker, skeleton, white, seams, joints, bones, bars.",
      open_pattern},
     {"isf", "A shader in the Interactive Shader Format, version 2.", open_isf},
+    {"shadertoy", "A shader by the conventions of Shadertoy.", open_shadertoy},
     {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
 };
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,6 +128,7 @@ class Trial {
     if (auto opened = open(); !opened) {
       report_["error"] = opened.error().what;
     } else {
+      give_pictures();
       draw_all();
       if (report_["motion"] == "still") try_parameters();
     }
@@ -136,11 +138,13 @@ class Trial {
 
  private:
   Result<void> open();
+  void give_pictures();
   void draw_all();
   Result<bool> draw(int frame);
   void note_picture(int frame, double ms);
   void save(std::string_view which);
   void try_parameters();
+  bool is_set(std::string_view name) const;
   bool reacts(const Parameter& parameter, const renderer::Texture& usual);
 
   const Wanted& wanted_;
@@ -186,6 +190,27 @@ Result<void> Trial::open() {
     if (!is_of_chain(parameter.name)) report_["parameters"].push_back(report_of(parameter));
   tell_(report_);
   return {};
+}
+
+/// Gives a test card for each picture that can be set and is not.
+void Trial::give_pictures() {
+  const auto file = std::filesystem::temp_directory_path() /
+                    fmt::format("handcast-try-{}.png", getpid());
+  paint_card(1, 1, cards_[1]);
+  for (const auto& parameter : chain_->parameters()) {
+    if (parameter.kind != Kind::picture || is_set(parameter.name)) continue;
+    if (!renderer::write_png(file, std::as_const(cards_[1]).view())) return;
+    if (const auto set = chain_->set(parameter.name, file.string()); !set)
+      report_["error"] = set.error().what;
+  }
+  std::error_code absent;
+  std::filesystem::remove(file, absent);
+}
+
+/// True if a parameter is part of what was given.
+bool Trial::is_set(std::string_view name) const {
+  const auto own = std::string(name.substr(name.rfind('.') + 1));
+  return wanted_.source.find(" " + own + "=") != std::string::npos;
 }
 
 /// Draws the picture of a frame into picture_ and measures it. Returns whether it is new.
