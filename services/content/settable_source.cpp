@@ -19,7 +19,8 @@ Result<void> SettableSource::set(std::string_view name, std::string_view value) 
   const auto index = index_of(name);
   if (index == parameters_.size()) return Source::set(name, value);
   const Parameter& parameter = parameters_[index];
-  if (parameter.kind != Parameter::Kind::text) {
+  using Kind = Parameter::Kind;
+  if (parameter.kind != Kind::text && parameter.kind != Kind::picture) {
     auto numbers = numbers_in_range(parameter, value);
     if (!numbers) return tl::make_unexpected(numbers.error());
     values_[index] = std::move(*numbers);

@@ -20,6 +20,7 @@ Result<std::unique_ptr<Source>> open_pattern(const Opening&);
 Result<std::unique_ptr<Source>> open_picture(const Opening&);
 Result<std::unique_ptr<Source>> open_paint(const Opening&);
 Result<std::unique_ptr<Source>> open_hand(const Opening&);
+Result<std::unique_ptr<Source>> open_shadertoy(const Opening&);
 Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
 Result<std::unique_ptr<Source>> open_program(const Opening&);
 
@@ -38,6 +39,7 @@ static constexpr SourceKind kKinds[] = {
     {"isf", "A shader in the Interactive Shader Format, version 2.", open_isf},
     {"paint", "Drawn on this hand by the index finger of the other one.", open_paint},
     {"hand", "What the camera sees of the hand.", open_hand},
+    {"shadertoy", "A shader by the conventions of Shadertoy.", open_shadertoy},
     {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
     {"program", "The pictures of any other program, by handcast.h.", open_program},
 };

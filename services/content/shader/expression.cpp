@@ -135,9 +135,11 @@ class ExpressionParser {
   void choice() {
     binary(1);
     if (!fault_.empty() || !take("?")) return;
-    choice();
+    go_deeper();
+    if (fault_.empty()) choice();
     expect(":");
     if (fault_.empty()) choice();
+    --depth_;
     call("if");
   }
 
@@ -154,9 +156,13 @@ class ExpressionParser {
     }
   }
 
-  void value() {
+  void go_deeper() {
     constexpr int kDeepest = 100;
     if (++depth_ > kDeepest) fault_ = "is nested too deeply";
+  }
+
+  void value() {
+    go_deeper();
     if (fault_.empty()) value_inside();
     --depth_;
   }

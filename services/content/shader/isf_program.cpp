@@ -128,7 +128,9 @@ std::string name_in_glsl(const std::string& name) {
 Result<IsfProgram> IsfProgram::make(Graphics& graphics, const fs::path& file,
                                     const Opening& opening) {
   IsfProgram made;
-  made.files = {file};
+  auto vertex_file = file;
+  vertex_file.replace_extension(".vs");
+  made.files = {file, vertex_file};
   constexpr std::size_t kMostBytes = 4 << 20;
   auto text = read_input(file, kMostBytes);
   if (!text) return tl::make_unexpected(text.error());
@@ -136,20 +138,19 @@ Result<IsfProgram> IsfProgram::make(Graphics& graphics, const fs::path& file,
   auto head = parse_isf_head(*text);
   if (!head) return fail_in(name, head.error());
   made.head = std::move(*head);
+  for (const auto& import : made.head.imports)
+    made.files.push_back(file.parent_path() / import.path);
 
   std::set<std::string, std::less<>> renamed;
   for (const auto& input : made.head.inputs)
     if (is_glsl_word(input.name())) renamed.insert(input.name());
-  UserStage fragment{file, *text, read_glsl(*text, renamed)}, vertex;
+  UserStage fragment{{file, *text, read_glsl(*text, renamed)}}, vertex;
   vertex.glsl.text = "void hc_main() {}\n";
-  auto vertex_file = file;
-  vertex_file.replace_extension(".vs");
   std::error_code absent;
   if (fs::exists(vertex_file, absent)) {
     auto vertex_text = read_input(vertex_file, kMostBytes);
     if (!vertex_text) return tl::make_unexpected(vertex_text.error());
-    vertex = {vertex_file, *vertex_text, read_glsl(*vertex_text, renamed)};
-    made.files.push_back(vertex_file);
+    vertex = {{vertex_file, *vertex_text, read_glsl(*vertex_text, renamed)}};
   }
   auto words = fragment.glsl.words;
   words.insert(vertex.glsl.words.begin(), vertex.glsl.words.end());

@@ -12,7 +12,7 @@ namespace handcast::content::shader {
 
 /// An ISF file, read and compiled.
 struct IsfProgram {
-  std::vector<std::filesystem::path> files;  ///< that were read
+  std::vector<std::filesystem::path> files;  ///< that it consists of, or might
   IsfHead head;
   std::unique_ptr<HandView> hands;
   UserProgram program;

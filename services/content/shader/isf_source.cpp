@@ -9,6 +9,7 @@
 #include "renderer/media/picture.hpp"
 #include "services/content/scaled.hpp"
 #include "services/content/settable_source.hpp"
+#include "services/content/shader/file_times.hpp"
 #include "services/content/shader/isf_program.hpp"
 
 namespace handcast::content {
@@ -39,17 +40,8 @@ std::vector<Parameter> parameters_of(const IsfHead& head) {
   for (const auto& input : head.inputs) {
     if (is_given(head, input.name()) || input.type >= Type::audio) continue;
     parameters.push_back(input.parameter);
-    // The path of a picture is a text.
-    if (input.is_image()) parameters.back().kind = Parameter::Kind::text;
   }
   return parameters;
-}
-
-std::map<std::string, fs::file_time_type> times_of(const std::vector<fs::path>& files) {
-  std::map<std::string, fs::file_time_type> times;
-  std::error_code absent;
-  for (const auto& file : files) times[file.string()] = fs::last_write_time(file, absent);
-  return times;
 }
 
 class IsfSource final : public SettableSource {
@@ -60,11 +52,11 @@ class IsfSource final : public SettableSource {
         isf_(std::move(isf)),
         width_(opening.width),
         height_(opening.height),
-        times_(times_of(isf_.files)) {
+        files_(isf_.files) {
     output_ = graphics_->make_target(GL_RGBA8, width_, height_);
   }
 
-  /// Errors: those of read_picture().
+  /// Errors: those of read_premultiplied_picture().
   Result<void> load_imports(const fs::path& folder) {
     for (const auto& import : isf_.head.imports)
       if (auto loaded = load(import.name, folder / import.path); !loaded) return loaded;
@@ -76,7 +68,7 @@ class IsfSource final : public SettableSource {
     return isf_.head.input(kInput) ? 1 : 0;
   }
   Needs needs() const override { return isf_.hands->needs(); }
-  bool is_stale() const override { return times_ != times_of(isf_.files); }
+  bool is_stale() const override { return files_.have_changed(); }
 
   Result<void> set(std::string_view name, std::string_view value) override {
     if (auto set = SettableSource::set(name, value); !set) return set;
@@ -105,7 +97,7 @@ class IsfSource final : public SettableSource {
 
  private:
   Result<void> load(const std::string& name, const fs::path& file) {
-    const auto picture = renderer::read_picture(file);
+    const auto picture = renderer::read_premultiplied_picture(file);
     if (!picture) return fail_in(name, picture.error());
     graphics_->upload(images_[name], picture->view(), true);
     return {};
@@ -225,7 +217,7 @@ class IsfSource final : public SettableSource {
   std::shared_ptr<Graphics> graphics_;  // first: the objects below are of it
   IsfProgram isf_;
   int width_, height_;
-  std::map<std::string, fs::file_time_type> times_;  ///< of its files
+  FileTimes files_;
   Target output_;
   std::map<std::string, Buffer> buffers_;  ///< by their targets
   std::map<std::string, Texels> images_;

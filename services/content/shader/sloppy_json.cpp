@@ -5,6 +5,8 @@
 
 #include <cctype>
 
+#include "ipc/base/quote.hpp"
+
 namespace handcast::content::shader {
 namespace {
 
@@ -50,6 +52,10 @@ class Strictener {
         out_ += "\\n", ++at_;
       } else if (static_cast<unsigned char>(c) < 0x20) {
         out_ += fmt::format("\\u{:04x}", static_cast<int>(c)), ++at_;
+      } else if (const auto bytes = bytes_of_character(text_.substr(at_)); bytes > 1) {
+        out_ += text_.substr(at_, bytes), at_ += bytes;
+      } else if (bytes == 0) {
+        out_ += '?', ++at_;
       } else {
         put(c);
       }

@@ -18,13 +18,18 @@ namespace {
 constexpr std::array<int, 3> kVersions{330, 130, 410};
 
 /// The numbers of the texts in a driver's messages.
-constexpr int kUserText = 0, kOwnText = 1;
+constexpr int kUserText = 0, kOwnText = 1, kCommonText = 2;
 
 std::string assembled(const UserStage& stage, int version) {
   // Before GLSL 3.30, "#line N" numbers the line after the next one.
   const int first = version >= 330 ? 1 : 0;
-  return fmt::format("#version {}\n{}#line 1 {}\n{}\n#line {} {}\n{}\n#line 1 {}\n{}\n", version,
-                     stage.glsl.extensions, kOwnText, stage.prelude, first, kUserText,
+  std::string extensions = stage.glsl.extensions, common;
+  if (stage.common) {
+    extensions += stage.common->glsl.extensions;
+    common = fmt::format("#line {} {}\n{}\n", first, kCommonText, stage.common->glsl.text);
+  }
+  return fmt::format("#version {}\n{}#line 1 {}\n{}\n{}#line {} {}\n{}\n#line 1 {}\n{}\n", version,
+                     extensions, kOwnText, stage.prelude, common, first, kUserText,
                      stage.glsl.text, kOwnText, stage.epilogue);
 }
 
@@ -97,13 +102,15 @@ std::string readable(std::string sentence) {
 
 tl::unexpected<Error> compile_error(const UserStage& stage, const std::string& log) {
   const auto message = first_error(log);
-  const auto name = stage.file.filename().string();
-  if (message.text != kUserText)
+  const bool is_common = message.text == kCommonText && stage.common;
+  const UserText& text = is_common ? *stage.common : stage;
+  const auto name = text.file.filename().string();
+  if (message.text != kUserText && !is_common)
     return fail(Errc::bad_config, fmt::format("{}: {}", name, readable(message.sentence)));
-  const auto line = line_of(stage.original, message.line);
-  return fail(Errc::bad_config,
-              fmt::format("{}:{}: {}{}{}", name, message.line, readable(message.sentence),
-                          line.empty() ? "" : ": ", line));
+  const auto line = line_of(text.original, message.line);
+  return fail(Errc::bad_config, fmt::format("{}:{}: {}{}{}", name, message.line,
+                                            readable(message.sentence), line.empty() ? "" : ": ",
+                                            line));
 }
 
 Result<void> compile(Graphics& graphics, const gl::Program& program, GLenum kind,
@@ -151,6 +158,14 @@ Result<gl::Program> build(Graphics& graphics, const UserStage& fragment, const U
 }
 
 }  // namespace
+
+UserStage plain_vertex_stage() {
+  UserStage stage;
+  stage.glsl.text =
+      "void main() {\n"
+      "  gl_Position = vec4(2 * (gl_VertexID & 1) - 1, 2 * (gl_VertexID >> 1) - 1, 0.0, 1.0);\n}\n";
+  return stage;
+}
 
 Result<UserProgram> UserProgram::make(Graphics& graphics, const UserStage& fragment,
                                       const UserStage& vertex,

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,12 +13,17 @@
 
 namespace handcast::content::shader {
 
-/// One stage of a person's program.
-struct UserStage {
+/// A text of a person's program.
+struct UserText {
   std::filesystem::path file;  ///< for messages
   std::string original;        ///< as in the file, for messages
   GlslText glsl;
-  std::string prelude, epilogue;  ///< what stands before and behind it
+};
+
+/// One stage of a person's program.
+struct UserStage : UserText {
+  std::string prelude, epilogue;     ///< what stands before and behind its texts
+  std::optional<UserText> common{};  ///< before its own
 };
 
 /// A program of a fragment shader and perhaps a vertex shader that a person wrote. In its
