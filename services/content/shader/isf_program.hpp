@@ -15,7 +15,7 @@ struct IsfProgram {
   std::vector<std::filesystem::path> files;  ///< that were read
   IsfHead head;
   std::unique_ptr<HandView> hands;
-  UserProgram program;
+  std::vector<UserProgram> programs;  ///< one a pass: PASSINDEX is a constant in each
   std::vector<std::string> images;  ///< the names of its images, in the order of their units
   bool is_still = false;            ///< its picture depends on its parameters and images only
 
