@@ -4,8 +4,8 @@
   "ISFVSN": "2",
   "CATEGORIES": ["Generator"],
   "INPUTS": [
-    {"NAME": "tint", "LABEL": "Colour", "TYPE": "color", "DEFAULT": [0.45, 0.78, 1.0, 1.0]},
-    {"NAME": "flesh", "LABEL": "Flesh", "TYPE": "float", "DEFAULT": 0.5, "MIN": 0.0, "MAX": 1.5},
+    {"NAME": "tint", "LABEL": "Colour", "TYPE": "color", "DEFAULT": [0.22, 0.66, 1.0, 1.0]},
+    {"NAME": "flesh", "LABEL": "Flesh", "TYPE": "float", "DEFAULT": 0.6, "MIN": 0.0, "MAX": 1.5},
     {"NAME": "sweep", "LABEL": "Sweeps a minute", "TYPE": "float", "DEFAULT": 12.0, "MIN": 0.0, "MAX": 60.0},
     {"NAME": "negative", "LABEL": "Negative", "TYPE": "bool", "DEFAULT": false}
   ],
@@ -37,7 +37,7 @@ float pebble(vec3 p, vec3 at, vec2 size, float turn) {
 
 // An edge that is brighter than the inside, as cortical bone is.
 float cortex(float inside) {
-  return inside <= 0.0 ? 0.0 : smoothstep(0.0, 0.16, inside) * (0.60 + 0.52 * exp(-pow((inside - 0.2) / 0.2, 2.0)));
+  return inside <= 0.0 ? 0.0 : smoothstep(0.0, 0.30, inside) * (0.58 + 0.50 * exp(-pow((inside - 0.32) / 0.20, 2.0)));
 }
 
 float wrist(vec3 p) {
@@ -87,19 +87,13 @@ void main() {
     return;
   }
   vec4 it = texelFetch(bones, texel, 0);
-  gl_FragColor = vec4(0.0, 0.0, 0.0, 1.0);
-  if (it.g == 0.0) return;
-  float arm = smoothstep(0.37, 0.44, it.b);
-  float beam = fract(sweep * TIME / 60.0) * 1.5 - 0.1;
-  float behind = beam - it.b;
-  float lit = exp(-1200.0 * behind * behind) + (behind > 0.0 ? 0.5 * exp(-9.0 * behind) : 0.0);
-  float body = flesh * it.g * arm * (0.20 + 0.5 * lit);
-  float hard = it.r * arm * (0.78 + 0.7 * lit);
-  if (negative) {
-    float dense = clamp(1.0 - hard, 0.0, 1.0);
-    gl_FragColor.rgb = tint.rgb * arm * dense * (0.35 + 0.5 * it.g);
-    return;
-  }
-  vec3 pale = mix(tint.rgb, vec3(1.0), 0.62);
-  gl_FragColor.rgb = tint.rgb * tint.rgb * body * (1.0 - 0.8 * it.r) + pale * hard * hard * 1.1;
+  float arm = smoothstep(0.26, 0.40, it.b);
+  float beam = fract(sweep * TIME / 60.0) * 1.5 - 0.1, behind = beam - it.b;
+  float lit = exp(-1500.0 * behind * behind) + (behind > 0.0 ? 0.45 * exp(-8.0 * behind) : 0.0);
+  float body = flesh * it.g * arm * (0.55 + 1.1 * lit);
+  float hard = it.r * arm * (0.95 + 0.45 * lit);
+  vec3 deep = tint.rgb * tint.rgb, pale = mix(tint.rgb, vec3(1.0), 0.10 + 0.65 * it.r * it.r);
+  vec3 light = deep * body * (1.0 - 0.7 * it.r) + pale * hard;
+  if (negative) light = deep * it.g * flesh * arm * (0.9 + lit) + tint.rgb * arm * max(0.0, 0.85 - hard);
+  gl_FragColor = vec4(it.g > 0.0 ? light : vec3(0.0), 1.0);
 }
