@@ -5,7 +5,7 @@
   "CATEGORIES": ["Generator"],
   "INPUTS": [
     {"NAME": "ink", "LABEL": "Colour", "TYPE": "color", "DEFAULT": [1.0, 0.36, 0.06, 1.0]},
-    {"NAME": "seconds", "LABEL": "Seconds to draw it", "TYPE": "float", "DEFAULT": 14.0, "MIN": 1.0, "MAX": 120.0},
+    {"NAME": "seconds", "LABEL": "Seconds to draw it", "TYPE": "float", "DEFAULT": 8.0, "MIN": 1.0, "MAX": 120.0},
     {"NAME": "rest", "LABEL": "Seconds it stays", "TYPE": "float", "DEFAULT": 12.0, "MIN": 0.0, "MAX": 120.0},
     {"NAME": "petals", "LABEL": "Petals", "TYPE": "long", "VALUES": [8, 10, 12, 16], "LABELS": ["8", "10", "12", "16"], "DEFAULT": 12}
   ],

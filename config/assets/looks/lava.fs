@@ -4,7 +4,7 @@
   "ISFVSN": "2",
   "CATEGORIES": ["Generator"],
   "INPUTS": [
-    {"NAME": "heat", "LABEL": "Heat", "TYPE": "float", "DEFAULT": 0.45, "MIN": 0.0, "MAX": 1.0},
+    {"NAME": "heat", "LABEL": "Heat", "TYPE": "float", "DEFAULT": 0.36, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "by_fist", "LABEL": "Heat of a fist", "TYPE": "float", "DEFAULT": 0.45, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "by_speed", "LABEL": "Heat per m/s", "TYPE": "float", "DEFAULT": 0.35, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "flow", "LABEL": "Flow", "TYPE": "float", "DEFAULT": 1.0, "MIN": 0.0, "MAX": 4.0}
