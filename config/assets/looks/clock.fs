@@ -95,8 +95,8 @@ void main() {
   vec4 it = texelFetch(face, texel, 0);
   float now = DATE.w + 3600.0 * shift, second = mod(now, 60.0), minutes = now / 60.0, hours = now / 3600.0;
   const float kTurn = 6.28318531;
-  float shown = needle(it.rg, kTurn * hours / 12.0, 18.0, 4.2);
-  shown = max(shown, needle(it.rg, kTurn * minutes / 60.0, 27.5, 3.2));
+  float shown = needle(it.rg, kTurn * hours / 12.0, 17.0, 3.4);
+  shown = max(shown, needle(it.rg, kTurn * minutes / 60.0, 26.5, 2.6));
   float glow = exp(-max(0.0, 32.5 - length(it.rg)) / 2.5) * step(length(it.rg), 32.5);
   vec3 light = dial.rgb * it.b + vec3(1.0, 0.97, 0.9) * shown + 0.16 * dial.rgb * glow;
   float ahead = kTurn * (sweeps ? second : floor(second)) / 60.0;
@@ -106,8 +106,8 @@ void main() {
     float bead = floor(it.a) - 1.0, away = (it.a - 1.0 - bead) * 10.0;
     float since = mod(second - bead, 60.0), runs = exp(-since * (sweeps ? 0.45 : 0.9));
     float done = bead <= second ? 1.0 : 0.0;
-    float radius = 1.3 + 1.0 * runs;
-    light += point.rgb * disc(away, radius) * (0.16 + 0.45 * done + runs) + vec3(1.0) * disc(away, radius * 0.6) * runs;
+    float radius = 1.9 + 1.1 * runs;
+    light += point.rgb * disc(away, radius) * (0.22 + 0.55 * done + runs) + vec3(1.0) * disc(away, radius * 0.6) * runs;
     light += point.rgb * runs * 0.6 * exp(-away * away / 14.0);
   }
   gl_FragColor = vec4(it.a < 0.0 ? vec3(0.0) : light, 1.0);

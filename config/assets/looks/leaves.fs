@@ -4,7 +4,7 @@
   "ISFVSN": "2",
   "CATEGORIES": ["Generator"],
   "INPUTS": [
-    {"NAME": "year", "LABEL": "Seconds of a year", "TYPE": "float", "DEFAULT": 24.0, "MIN": 4.0, "MAX": 600.0},
+    {"NAME": "year", "LABEL": "Seconds of a year", "TYPE": "float", "DEFAULT": 20.0, "MIN": 4.0, "MAX": 600.0},
     {"NAME": "start", "LABEL": "Begins in", "TYPE": "long", "VALUES": [0, 1, 2, 3], "LABELS": ["spring", "summer", "autumn", "winter"], "DEFAULT": 0},
     {"NAME": "sway", "LABEL": "Sway", "TYPE": "float", "DEFAULT": 1.0, "MIN": 0.0, "MAX": 3.0},
     {"NAME": "green", "LABEL": "Summer", "TYPE": "color", "DEFAULT": [0.22, 0.85, 0.16, 1.0]}

@@ -28,10 +28,11 @@ float noise(vec2 p) {
 // Tapered bands across: s along, d across, each open near the middle or at one side.
 float bands(float s, float d, float pitch, float half_width, float seed) {
   float bent = s + 0.30 * abs(d) + 2.2 * (noise(vec2(0.16 * s + seed, 0.22 * d)) - 0.5) * 2.0;
+  bent += 0.45 * pitch * (noise(vec2(0.10 * d + seed, 0.06 * s)) - 0.5) * 2.0;
   float i = floor(bent / pitch), f = abs(bent / pitch - i - 0.5) * 2.0;
   float from = (hash(vec2(i, seed)) - 0.5) * 0.9 * half_width;
   float away = abs(d - from) / half_width;
-  float thick = 0.50 * smoothstep(0.04, 0.75, away) + 0.13;
+  float thick = 0.46 * smoothstep(0.05, 0.9, away) + 0.03 + 0.22 * (hash(vec2(i, seed + 4.0)) - 0.5);
   float fork = noise(vec2(0.35 * d + 5.0 * i, 0.9 * s + seed)) - 0.5;
   return 1.0 - smoothstep(thick - 0.10, thick + 0.10, f + 0.35 * fork);
 }
@@ -54,8 +55,8 @@ void main() {
     float s = dot(p - a, along), d = dot(p - a, across);
     // On the hand, stripes come from both sides to the line of the middle finger.
     float x = (p.x - hand_rest_joint[11].x) + 0.10 * mirror * (p.z + 40.0), y = -p.z;
-    float back = bands(y - 0.35 * abs(x), x, 12.0, 34.0, 3.0);
-    float finger = bands(s, d, 9.5, 8.5, float(base));
+    float back = bands(y - 0.45 * abs(x), x, 14.5, 36.0, 3.0);
+    float finger = bands(s, d, 11.0, 8.5, float(base));
     float stripe = is_finger ? mix(back, finger, is_thumb ? 1.0 : smoothstep(-6.0, 8.0, s)) : back;
     // Hairs along the bones.
     float warp = 4.0 * noise(0.12 * p.xz);
