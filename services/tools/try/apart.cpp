@@ -99,8 +99,8 @@ Report draw_apart(const Wanted& wanted) {
   report["error"] =
       heard.is_hung
           ? fmt::format("it hangs: no step has ended within {:g} s", wanted.patience_s)
-          : fmt::format("it crashes ({})", WIFSIGNALED(status) ? strsignal(WTERMSIG(status))
-                                                               : "it ended the process");
+          : fmt::format("it crashes ({})",
+                        WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ended the process");
   return report;
 }
 

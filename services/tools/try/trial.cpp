@@ -33,7 +33,8 @@ void paint_card(double time_s, int which, renderer::Texture& card) {
                   v = static_cast<float>(y) / static_cast<float>(card.height());
       const float du = u - 0.5f - 0.3f * std::cos(t + phase), dv = v - 0.5f - 0.3f * std::sin(t);
       const bool is_disc = du * du * 2.56f + dv * dv < 0.02f;
-      const bool is_line = std::fmod(8 * u + 0.3f * t, 1.f) < 0.06f || std::fmod(5 * v, 1.f) < 0.06f;
+      const bool is_line =
+          std::fmod(8 * u + 0.3f * t, 1.f) < 0.06f || std::fmod(5 * v, 1.f) < 0.06f;
       std::uint32_t texel = 0xff000000u;
       for (int c = 0; c < 3; ++c) {
         float level = 0.5f + 0.5f * std::cos(6 * u + 3 * v + phase + 2.1f * static_cast<float>(c));
@@ -67,18 +68,15 @@ class WithCards final : public content::Source {
 };
 
 std::string_view name_of(Kind kind) {
-  constexpr std::array<std::string_view, 10> kNames{"number", "whole", "flag", "event",   "choice",
+  constexpr std::array<std::string_view, 10> kNames{"number", "whole",  "flag", "event",   "choice",
                                                     "point",  "colour", "text", "picture", "sound"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
 Report report_of(const Parameter& parameter) {
-  return {{"name", parameter.name},
-          {"label", parameter.label},
-          {"kind", name_of(parameter.kind)},
-          {"least", parameter.least},
-          {"most", parameter.most},
-          {"initial", parameter.initial},
+  return {{"name", parameter.name},          {"label", parameter.label},
+          {"kind", name_of(parameter.kind)}, {"least", parameter.least},
+          {"most", parameter.most},          {"initial", parameter.initial},
           {"choices", parameter.choices}};
 }
 
@@ -159,8 +157,7 @@ class Trial {
 };
 
 Result<void> Trial::open() {
-  const auto resolved =
-      config::resolve_content(wanted_.source, std::filesystem::current_path());
+  const auto resolved = config::resolve_content(wanted_.source, std::filesystem::current_path());
   if (!resolved) return tl::make_unexpected(resolved.error());
   const auto written = config::parse_content(*resolved);
   if (!written) return tl::make_unexpected(written.error());
@@ -194,8 +191,8 @@ Result<void> Trial::open() {
 
 /// Gives a test card for each picture that can be set and is not.
 void Trial::give_pictures() {
-  const auto file = std::filesystem::temp_directory_path() /
-                    fmt::format("handcast-try-{}.png", getpid());
+  const auto file =
+      std::filesystem::temp_directory_path() / fmt::format("handcast-try-{}.png", getpid());
   paint_card(1, 1, cards_[1]);
   for (const auto& parameter : chain_->parameters()) {
     if (parameter.kind != Kind::picture || is_set(parameter.name)) continue;
@@ -242,8 +239,7 @@ void Trial::note_picture(int frame, double ms) {
   if (frame < wanted_.frames) {
     report_["pictures"] = report_["pictures"].get<int>() + 1;
     ms_.push_back(ms);
-    if (is_first || pixels != first_.pixels())
-      report_["motion"] = is_first ? "still" : "moves";
+    if (is_first || pixels != first_.pixels()) report_["motion"] = is_first ? "still" : "moves";
   }
   if (std::ranges::any_of(pixels, [&](auto pixel) { return pixel != pixels[0]; }))
     report_["plain"] = false;
@@ -251,7 +247,8 @@ void Trial::note_picture(int frame, double ms) {
 
 void Trial::draw_all() {
   bool goes_on = true;
-  for (int frame = 0; frame < wanted_.frames && goes_on && (frame < 1 || !until_.passed()); ++frame) {
+  for (int frame = 0; frame < wanted_.frames && goes_on && (frame < 1 || !until_.passed());
+       ++frame) {
     const auto drew = draw(frame);
     if (!drew) report_["error"] = drew.error().what;
     goes_on = drew || drew.error().code == Errc::bad_data || drew.error().code == Errc::timeout;
@@ -301,11 +298,20 @@ bool Trial::reacts(const Parameter& parameter, const renderer::Texture& usual) {
 }  // namespace
 
 Report blank_report(const std::string& source) {
-  return {{"source", source},   {"loaded", false}, {"drawn", false},
-          {"pictures", 0},      {"plain", true},   {"motion", ""},
-          {"open_ms", 0.0},     {"first_ms", 0.0}, {"median_ms", 0.0},
-          {"p99_ms", 0.0},      {"error", ""},     {"end", ""},
-          {"files", Report::array()}, {"reacts_to", Report::array()},
+  return {{"source", source},
+          {"loaded", false},
+          {"drawn", false},
+          {"pictures", 0},
+          {"plain", true},
+          {"motion", ""},
+          {"open_ms", 0.0},
+          {"first_ms", 0.0},
+          {"median_ms", 0.0},
+          {"p99_ms", 0.0},
+          {"error", ""},
+          {"end", ""},
+          {"files", Report::array()},
+          {"reacts_to", Report::array()},
           {"parameters", Report::array()}};
 }
 
