@@ -68,17 +68,27 @@ constexpr std::array kExpressionCalls{
     ExpressionCall{"min", 2, [](const double* a) { return std::min(a[0], a[1]); }},
     ExpressionCall{"max", 2, [](const double* a) { return std::max(a[0], a[1]); }},
     ExpressionCall{"step", 2, [](const double* a) { return a[1] < a[0] ? 0. : 1.; }},
-    ExpressionCall{"mod", 2,
-                   [](const double* a) { return a[0] - a[1] * std::floor(a[0] / a[1]); }},
+    ExpressionCall{"mod", 2, [](const double* a) { return a[0] - a[1] * std::floor(a[0] / a[1]); }},
     ExpressionCall{"clamp", 3,
                    [](const double* a) { return std::min(std::max(a[0], a[1]), a[2]); }},
     ExpressionCall{"mix", 3, [](const double* a) { return a[0] + (a[1] - a[0]) * a[2]; }},
 };
 
 /// Operators that stand between two values, and how strongly they bind.
-constexpr std::array<std::pair<std::string_view, int>, 14> kBinary{
-    {{"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {"<=", 4}, {">=", 4}, {"<", 4},
-     {">", 4}, {"+", 5}, {"-", 5}, {"*", 6}, {"/", 6}, {"%", 6}, {"^", 8}}};
+constexpr std::array<std::pair<std::string_view, int>, 14> kBinary{{{"||", 1},
+                                                                    {"&&", 2},
+                                                                    {"==", 3},
+                                                                    {"!=", 3},
+                                                                    {"<=", 4},
+                                                                    {">=", 4},
+                                                                    {"<", 4},
+                                                                    {">", 4},
+                                                                    {"+", 5},
+                                                                    {"-", 5},
+                                                                    {"*", 6},
+                                                                    {"/", 6},
+                                                                    {"%", 6},
+                                                                    {"^", 8}}};
 constexpr int kUnary = 7;
 
 }  // namespace
@@ -178,8 +188,8 @@ class ExpressionParser {
   std::string_view word() {
     skip();
     std::size_t length = 0;
-    while (length < rest_.size() && (std::isalnum(static_cast<unsigned char>(rest_[length])) ||
-                                     rest_[length] == '_'))
+    while (length < rest_.size() &&
+           (std::isalnum(static_cast<unsigned char>(rest_[length])) || rest_[length] == '_'))
       ++length;
     if (length == 0 || (std::isdigit(static_cast<unsigned char>(rest_[0])))) return {};
     const auto name = rest_.substr(0, length);
@@ -211,8 +221,7 @@ class ExpressionParser {
   void number() {
     skip();
     double value = 0;
-    const auto [end, error] =
-        std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+    const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
     if (error != std::errc()) {
       fault_ = rest_.empty() ? "ends before a number"
                              : fmt::format("has no number before {}", quote(rest_));

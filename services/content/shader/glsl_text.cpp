@@ -12,20 +12,22 @@ namespace {
 /// Words that GLSL keeps for later, but which older versions gave away, and those that no shader
 /// for one picture needs.
 constexpr auto kReserved = std::to_array<std::string_view>(
-    {"active",   "asm",      "buffer",   "cast",     "class",     "common",   "enum",
-     "extern",   "external", "filter",   "fixed",    "goto",      "half",     "inline",
-     "input",    "interface", "long",    "namespace", "noinline", "output",   "packed",
-     "partition", "patch",   "public",   "resource", "sample",    "shared",   "short",
-     "sizeof",   "static",   "subroutine", "superp", "template",  "this",     "typedef",
-     "union",    "unsigned", "using"});
+    {"active",    "asm",       "buffer",     "cast",      "class",    "common", "enum",
+     "extern",    "external",  "filter",     "fixed",     "goto",     "half",   "inline",
+     "input",     "interface", "long",       "namespace", "noinline", "output", "packed",
+     "partition", "patch",     "public",     "resource",  "sample",   "shared", "short",
+     "sizeof",    "static",    "subroutine", "superp",    "template", "this",   "typedef",
+     "union",     "unsigned",  "using"});
 
 /// Words that are part of the language, which only the name of an input may replace.
 constexpr auto kWords = std::to_array<std::string_view>(
-    {"smooth", "flat", "centroid", "noperspective", "invariant", "uniform", "varying",
-     "attribute", "const", "in", "out", "inout", "float", "int", "bool", "uint", "double", "vec2",
-     "vec3", "vec4", "mat2", "mat3", "mat4", "switch", "case", "default", "if", "else", "for",
-     "while", "do", "break", "continue", "return", "discard", "struct", "void", "true", "false",
-     "precision", "highp", "mediump", "lowp", "layout", "main", "texture", "sampler2D"});
+    {"smooth",    "flat",   "centroid", "noperspective", "invariant", "uniform", "varying",
+     "attribute", "const",  "in",       "out",           "inout",     "float",   "int",
+     "bool",      "uint",   "double",   "vec2",          "vec3",      "vec4",    "mat2",
+     "mat3",      "mat4",   "switch",   "case",          "default",   "if",      "else",
+     "for",       "while",  "do",       "break",         "continue",  "return",  "discard",
+     "struct",    "void",   "true",     "false",         "precision", "highp",   "mediump",
+     "lowp",      "layout", "main",     "texture",       "sampler2D"});
 
 bool is_word_start(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_word_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }

@@ -119,8 +119,7 @@ void Graphics::read(const Target& target, renderer::Texture& out) {
 void Graphics::draw(const Target& target, bool clears) {
   const auto& gl = functions();
   constexpr std::array<GLfloat, 4> kClear{};
-  if (clears)
-    gl.ClearNamedFramebufferfv(target.framebuffer.name(), GL_COLOR, 0, kClear.data());
+  if (clears) gl.ClearNamedFramebufferfv(target.framebuffer.name(), GL_COLOR, 0, kClear.data());
   gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, target.framebuffer.name());
   gl.Viewport(0, 0, target.texels.width, target.texels.height);
   gl.BindVertexArray(corners_.name());

@@ -17,12 +17,12 @@ struct Uniform {
   bool is_list, is_live;
 };
 constexpr Uniform kUniforms[] = {
-    {"int", "there", false, true},       {"int", "side", false, false},
-    {"vec3", "joint", true, true},       {"vec3", "rest_joint", true, false},
-    {"vec2", "palm_uv", true, false},    {"vec2", "back_uv", true, false},
-    {"float", "pinch", false, true},     {"float", "spread", false, true},
-    {"float", "curl", false, true},      {"float", "speed", false, true},
-    {"vec3", "normal", false, true},     {"vec3", "gravity", false, true},
+    {"int", "there", false, true},    {"int", "side", false, false},
+    {"vec3", "joint", true, true},    {"vec3", "rest_joint", true, false},
+    {"vec2", "palm_uv", true, false}, {"vec2", "back_uv", true, false},
+    {"float", "pinch", false, true},  {"float", "spread", false, true},
+    {"float", "curl", false, true},   {"float", "speed", false, true},
+    {"vec3", "normal", false, true},  {"vec3", "gravity", false, true},
 };
 constexpr std::string_view kPrefixes[] = {"hand_", "other_"};
 
@@ -198,8 +198,7 @@ void HandView::draw_map(std::size_t index, const HandState& hand) {
     if (kind == kRest) out = at_rest(texel);
     if (kind == kBone) out = on_bone(texel);
     if (kind == kPosition) out = glm::vec4(texel.of(hand.positions_m), facing(texel));
-    if (kind == kNormal)
-      out = glm::vec4(glm::normalize(texel.of(hand.normals)), facing(texel));
+    if (kind == kNormal) out = glm::vec4(glm::normalize(texel.of(hand.normals)), facing(texel));
   }
   for (const auto& [to, from] : beside_) {
     place(to) = place(from);

@@ -81,8 +81,8 @@ class HandView {
   Side side_;
   int width_, height_;
   std::optional<SurfaceMap> map_;
-  std::vector<float> facing_;     ///< per chart: 1 on the back, -1 on the palm
-  std::vector<float> edge_px_;    ///< per texel of the picture
+  std::vector<float> facing_;       ///< per chart: 1 on the back, -1 on the palm
+  std::vector<float> edge_px_;      ///< per texel of the picture
   std::vector<glm::vec3> rest_mm_;  ///< per vertex
   std::vector<Beside> beside_;
   std::array<Places, 2> places_;

@@ -134,15 +134,16 @@ Result<IsfInput> read_input_of(const Json& element) {
   IsfInput input;
   input.parameter.name = text_of(at(element, "NAME"));
   if (!is_identifier(input.name()))
-    return bad_head(fmt::format("an input has the name {}; it must be one of GLSL",
-                                quote(input.name())));
+    return bad_head(
+        fmt::format("an input has the name {}; it must be one of GLSL", quote(input.name())));
   std::string type = text_of(at(element, "TYPE"));
   std::ranges::transform(type, type.begin(), [](unsigned char c) { return std::tolower(c); });
   const auto found = std::ranges::find(kTypes, type, &std::pair<std::string_view, Type>::first);
   if (found == kTypes.end())
-    return bad_head(fmt::format("the input {} has the type {}; types are event, bool, long, "
-                                "float, point2D, color, image, audio and audioFFT",
-                                input.name(), quote(type)));
+    return bad_head(
+        fmt::format("the input {} has the type {}; types are event, bool, long, "
+                    "float, point2D, color, image, audio and audioFFT",
+                    input.name(), quote(type)));
   input.type = found->second;
   input.parameter.kind = kind_of(input.type);
   input.parameter.label = text_of(at(element, "LABEL"));
@@ -175,8 +176,8 @@ Result<IsfPass> read_pass(const Json& element, const IsfHead& head) {
   IsfPass pass;
   pass.target = text_of(at(element, "TARGET"));
   if (!pass.target.empty() && !is_identifier(pass.target))
-    return bad_head(fmt::format("a pass has the TARGET {}; it must be a name of GLSL",
-                                quote(pass.target)));
+    return bad_head(
+        fmt::format("a pass has the TARGET {}; it must be a name of GLSL", quote(pass.target)));
   auto width = read_size(at(element, "WIDTH"), "WIDTH", head);
   if (!width) return tl::make_unexpected(width.error());
   auto height = read_size(at(element, "HEIGHT"), "HEIGHT", head);
@@ -241,9 +242,8 @@ Result<IsfHead> read_head(const Json& json) {
   if (auto read = read_buffers(json, head); !read) return tl::make_unexpected(read.error());
   for (const Json& element : named_elements(at(json, "IMPORTED"))) {
     const Json& path = at(element, "PATH");
-    head.imports.push_back({text_of(at(element, "NAME")), text_of(path.is_array() && !path.empty()
-                                                                      ? path[0]
-                                                                      : path)});
+    head.imports.push_back(
+        {text_of(at(element, "NAME")), text_of(path.is_array() && !path.empty() ? path[0] : path)});
     if (!is_identifier(head.imports.back().name)) head.imports.pop_back();
   }
   return head;
@@ -275,8 +275,8 @@ Result<IsfHead> parse_isf_head(std::string_view text) {
   try {
     return read_head(Json::parse(strict));
   } catch (const Json::parse_error& error) {
-    const auto end = strict.begin() + static_cast<std::ptrdiff_t>(
-                                          std::min(error.byte, strict.size()));
+    const auto end =
+        strict.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, strict.size()));
     return bad_head(fmt::format("line {}: the head is no JSON; check its commas and quotes there",
                                 first_line + std::count(strict.begin(), end, '\n')));
   } catch (const Json::exception&) {

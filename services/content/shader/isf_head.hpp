@@ -26,7 +26,7 @@ struct IsfInput {
 
 /// A pass of an ISF file, or a buffer of one of version 1 that no pass draws.
 struct IsfPass {
-  std::string target;                        ///< the image that it draws; "": the output
+  std::string target;                       ///< the image that it draws; "": the output
   std::optional<Expression> width, height;  ///< px; empty: those of the output
   bool is_persistent = false, is_float = false;
 };

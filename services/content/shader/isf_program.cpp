@@ -90,9 +90,10 @@ std::string declarations_of(const IsfHead& head, const std::vector<std::string>&
       text += fmt::format("uniform {} {};\n", glsl_type_of(input.type), name_in_glsl(input.name()));
   for (const auto& image : images) {
     const auto name = name_in_glsl(image);
-    text += fmt::format("uniform sampler2D {0};\n#define _{1}_imgSize hc_size({0})\n"
-                        "#define _{1}_imgRect vec4(0.0, 0.0, 1.0, 1.0)\n#define _{1}_flip false\n",
-                        name, image);
+    text += fmt::format(
+        "uniform sampler2D {0};\n#define _{1}_imgSize hc_size({0})\n"
+        "#define _{1}_imgRect vec4(0.0, 0.0, 1.0, 1.0)\n#define _{1}_flip false\n",
+        name, image);
   }
   return text;
 }
@@ -107,7 +108,7 @@ std::string fragment_epilogue(const std::string& output) {
 }
 
 bool depends_on_settings_alone(const std::set<std::string, std::less<>>& words, const IsfHead& head,
-              const HandView& hands) {
+                               const HandView& hands) {
   for (const auto* const word : {"TIME", "TIMEDELTA", "DATE", "FRAMEINDEX"})
     if (words.contains(word)) return false;
   const auto changes = [](const IsfPass& pass) { return pass.is_persistent; };
@@ -157,8 +158,8 @@ Result<IsfProgram> IsfProgram::make(Graphics& graphics, const fs::path& file,
   made.images = images_of(made.head);
   made.is_still = depends_on_settings_alone(words, made.head, *made.hands);
 
-  const auto common = std::string(kBuiltIns) + declarations_of(made.head, made.images) +
-                      made.hands->declarations();
+  const auto common =
+      std::string(kBuiltIns) + declarations_of(made.head, made.images) + made.hands->declarations();
   fragment.prelude = std::string(kFragmentPrelude) + common;
   fragment.epilogue = fragment_epilogue(fragment.glsl.output);
   vertex.prelude = std::string(kVertexPrelude) + common;

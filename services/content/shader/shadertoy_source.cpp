@@ -36,7 +36,8 @@ std::string shadertoy_epilogue(bool is_image) {
   return fmt::format(
       "void main() {{\n  vec4 colour = vec4(0.0, 0.0, 0.0, 1.0);\n"
       "  mainImage(colour, gl_FragCoord.xy);\n"
-      "  hc_result = vec4(hc_finite(colour.r), hc_finite(colour.g), hc_finite(colour.b), {});\n}}\n",
+      "  hc_result = vec4(hc_finite(colour.r), hc_finite(colour.g), hc_finite(colour.b), "
+      "{});\n}}\n",
       is_image ? "1.0" : "hc_finite(colour.a)");
 }
 

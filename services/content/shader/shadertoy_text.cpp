@@ -148,8 +148,9 @@ class PartReader {
     if (word == "image") return begin(kImage);
     if (word.starts_with("buffer")) {
       if (const auto buffer = buffer_named(words)) return begin(*buffer);
-      return fail(Errc::bad_config,
-                  fmt::format("{} is no buffer; there are \"buffer A\" to \"buffer D\"", quote(words)));
+      return fail(
+          Errc::bad_config,
+          fmt::format("{} is no buffer; there are \"buffer A\" to \"buffer D\"", quote(words)));
     }
     return word.starts_with("ichannel") ? take_channel(words) : Result<void>();
   }
@@ -160,9 +161,9 @@ class PartReader {
     const int number = words.size() > kDigit ? words[kDigit] - '0' : -1;
     if (number < 0 || number >= kShadertoyChannels || equals == words.npos ||
         without_blanks(words.substr(kDigit + 1, equals - kDigit - 1)) != "")
-      return fail(Errc::bad_config,
-                  fmt::format("{} is no channel; write e.g. \"//! iChannel0 = buffer A\"",
-                              quote(words)));
+      return fail(
+          Errc::bad_config,
+          fmt::format("{} is no channel; write e.g. \"//! iChannel0 = buffer A\"", quote(words)));
     auto channel = read_channel(words.substr(equals + 1), file_.parent_path());
     if (!channel) return tl::make_unexpected(channel.error());
     part_->channels[number] = std::move(*channel);
@@ -193,8 +194,8 @@ bool has_headings(std::string_view text) {
 fs::path sibling_of(const fs::path& file, int part) {
   const std::string word =
       part == kCommon ? "common" : std::string(1, static_cast<char>('a' + part));
-  return file.parent_path() / fmt::format("{}.{}{}", file.stem().string(), word,
-                                          file.extension().string());
+  return file.parent_path() /
+         fmt::format("{}.{}{}", file.stem().string(), word, file.extension().string());
 }
 
 Result<PartTexts> read_parts(const fs::path& file, std::vector<fs::path>& files) {

@@ -29,8 +29,8 @@ std::string assembled(const UserStage& stage, int version) {
     common = fmt::format("#line {} {}\n{}\n", first, kCommonText, stage.common->glsl.text);
   }
   return fmt::format("#version {}\n{}#line 1 {}\n{}\n{}#line {} {}\n{}\n#line 1 {}\n{}\n", version,
-                     extensions, kOwnText, stage.prelude, common, first, kUserText,
-                     stage.glsl.text, kOwnText, stage.epilogue);
+                     extensions, kOwnText, stage.prelude, common, first, kUserText, stage.glsl.text,
+                     kOwnText, stage.epilogue);
 }
 
 /// A message of a driver: "0:12(5): error: ...", "0(12) : error C1008: ...", "ERROR: 0:12: ...".
@@ -108,9 +108,9 @@ tl::unexpected<Error> compile_error(const UserStage& stage, const std::string& l
   if (message.text != kUserText && !is_common)
     return fail(Errc::bad_config, fmt::format("{}: {}", name, readable(message.sentence)));
   const auto line = line_of(text.original, message.line);
-  return fail(Errc::bad_config, fmt::format("{}:{}: {}{}{}", name, message.line,
-                                            readable(message.sentence), line.empty() ? "" : ": ",
-                                            line));
+  return fail(Errc::bad_config,
+              fmt::format("{}:{}: {}{}{}", name, message.line, readable(message.sentence),
+                          line.empty() ? "" : ": ", line));
 }
 
 Result<void> compile(Graphics& graphics, const gl::Program& program, GLenum kind,

@@ -36,8 +36,9 @@ Result<void> read_size(const std::string& text, Wanted& wanted) {
       static_cast<std::size_t>(end) == text.size() && fits(wanted.width_px) &&
       fits(wanted.height_px))
     return {};
-  return fail(Errc::bad_config, fmt::format("{} is no size like 640x400, with {} to {} px on a side",
-                                            quote(text), kLeastSide_px, kMostSide_px));
+  return fail(Errc::bad_config,
+              fmt::format("{} is no size like 640x400, with {} to {} px on a side", quote(text),
+                          kLeastSide_px, kMostSide_px));
 }
 
 /// A name for the pictures of a source that no other one has: that of its file, without a folder.

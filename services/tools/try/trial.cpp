@@ -33,7 +33,8 @@ void paint_card(double time_s, int which, renderer::Texture& card) {
                   v = static_cast<float>(y) / static_cast<float>(card.height());
       const float du = u - 0.5f - 0.3f * std::cos(t + phase), dv = v - 0.5f - 0.3f * std::sin(t);
       const bool is_disc = du * du * 2.56f + dv * dv < 0.02f;
-      const bool is_line = std::fmod(8 * u + 0.3f * t, 1.f) < 0.06f || std::fmod(5 * v, 1.f) < 0.06f;
+      const bool is_line =
+          std::fmod(8 * u + 0.3f * t, 1.f) < 0.06f || std::fmod(5 * v, 1.f) < 0.06f;
       std::uint32_t texel = 0xff000000u;
       for (int c = 0; c < 3; ++c) {
         float level = 0.5f + 0.5f * std::cos(6 * u + 3 * v + phase + 2.1f * static_cast<float>(c));
@@ -67,18 +68,15 @@ class WithCards final : public content::Source {
 };
 
 std::string_view name_of(Kind kind) {
-  constexpr std::array<std::string_view, 10> kNames{"number", "whole", "flag", "event",   "choice",
+  constexpr std::array<std::string_view, 10> kNames{"number", "whole",  "flag", "event",   "choice",
                                                     "point",  "colour", "text", "picture", "sound"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
 Report report_of(const Parameter& parameter) {
-  return {{"name", parameter.name},
-          {"label", parameter.label},
-          {"kind", name_of(parameter.kind)},
-          {"least", parameter.least},
-          {"most", parameter.most},
-          {"initial", parameter.initial},
+  return {{"name", parameter.name},          {"label", parameter.label},
+          {"kind", name_of(parameter.kind)}, {"least", parameter.least},
+          {"most", parameter.most},          {"initial", parameter.initial},
           {"choices", parameter.choices}};
 }
 
@@ -126,7 +124,7 @@ class Trial {
 
   Report run() {
     if (auto opened = open(); !opened) {
-      report_["error"] = opened.error().what;
+      note_error(opened.error());
     } else {
       give_pictures();
       draw_all();
@@ -138,6 +136,7 @@ class Trial {
 
  private:
   Result<void> open();
+  void note_error(const Error& error);
   void give_pictures();
   void draw_all();
   Result<bool> draw(int frame);
@@ -151,19 +150,21 @@ class Trial {
   const std::function<void(const Report&)>& tell_;
   Report report_;
   Deadline until_;
+  std::string lone_;  ///< how the chain names its only element
   std::optional<MovingHands> hands_;
   std::array<renderer::Texture, 2> cards_;
+  bool uses_cards_ = false;
   std::optional<content::Chain> chain_;
   renderer::Texture picture_, first_;
   std::vector<double> ms_;  ///< of the pictures
 };
 
 Result<void> Trial::open() {
-  const auto resolved =
-      config::resolve_content(wanted_.source, std::filesystem::current_path());
+  const auto resolved = config::resolve_content(wanted_.source, std::filesystem::current_path());
   if (!resolved) return tl::make_unexpected(resolved.error());
   const auto written = config::parse_content(*resolved);
   if (!written) return tl::make_unexpected(written.error());
+  if (written->size() == 1) lone_ = fmt::format("{}:{}: ", (*written)[0].kind, (*written)[0].what);
   auto hands = MovingHands::load();
   if (!hands) return tl::make_unexpected(hands.error());
   hands_.emplace(std::move(*hands));
@@ -175,8 +176,10 @@ Result<void> Trial::open() {
   const auto with_cards = [this, opened = 0](const content::Opening& like) mutable {
     auto source = content::open_source(like);
     const bool is_lowest = opened++ == 0;
-    if (source && ((*source)->inputs() == 2 || (is_lowest && (*source)->inputs() == 1)))
-      *source = std::make_unique<WithCards>(std::move(*source), cards_);
+    if (!source || (*source)->inputs() == 0 || ((*source)->inputs() == 1 && !is_lowest))
+      return source;
+    uses_cards_ = true;
+    *source = std::make_unique<WithCards>(std::move(*source), cards_);
     return source;
   };
   const auto begin_ns = now_ns();
@@ -192,16 +195,20 @@ Result<void> Trial::open() {
   return {};
 }
 
+void Trial::note_error(const Error& error) {
+  const bool is_lone = !lone_.empty() && error.what.starts_with(lone_);
+  report_["error"] = error.what.substr(is_lone ? lone_.size() : 0);
+}
+
 /// Gives a test card for each picture that can be set and is not.
 void Trial::give_pictures() {
-  const auto file = std::filesystem::temp_directory_path() /
-                    fmt::format("handcast-try-{}.png", getpid());
+  const auto file =
+      std::filesystem::temp_directory_path() / fmt::format("handcast-try-{}.png", getpid());
   paint_card(1, 1, cards_[1]);
   for (const auto& parameter : chain_->parameters()) {
     if (parameter.kind != Kind::picture || is_set(parameter.name)) continue;
     if (!renderer::write_png(file, std::as_const(cards_[1]).view())) return;
-    if (const auto set = chain_->set(parameter.name, file.string()); !set)
-      report_["error"] = set.error().what;
+    if (const auto set = chain_->set(parameter.name, file.string()); !set) note_error(set.error());
   }
   std::error_code absent;
   std::filesystem::remove(file, absent);
@@ -217,8 +224,8 @@ bool Trial::is_set(std::string_view name) const {
 Result<bool> Trial::draw(int frame) {
   const double time_s = frame / kRate_hz;
   const auto both = hands_->at(time_s);
-  paint_card(time_s, 0, cards_[0]);
-  paint_card(time_s, 1, cards_[1]);
+  for (int which = 0; which < 2 && uses_cards_; ++which)
+    paint_card(time_s, which, cards_[static_cast<std::size_t>(which)]);
   content::Moment moment;
   moment.time_s = time_s;
   moment.step_s = 1 / kRate_hz;
@@ -242,8 +249,7 @@ void Trial::note_picture(int frame, double ms) {
   if (frame < wanted_.frames) {
     report_["pictures"] = report_["pictures"].get<int>() + 1;
     ms_.push_back(ms);
-    if (is_first || pixels != first_.pixels())
-      report_["motion"] = is_first ? "still" : "moves";
+    if (is_first || pixels != first_.pixels()) report_["motion"] = is_first ? "still" : "moves";
   }
   if (std::ranges::any_of(pixels, [&](auto pixel) { return pixel != pixels[0]; }))
     report_["plain"] = false;
@@ -251,9 +257,10 @@ void Trial::note_picture(int frame, double ms) {
 
 void Trial::draw_all() {
   bool goes_on = true;
-  for (int frame = 0; frame < wanted_.frames && goes_on && (frame < 1 || !until_.passed()); ++frame) {
+  for (int frame = 0; frame < wanted_.frames && goes_on && (frame < 1 || !until_.passed());
+       ++frame) {
     const auto drew = draw(frame);
-    if (!drew) report_["error"] = drew.error().what;
+    if (!drew) note_error(drew.error());
     goes_on = drew || drew.error().code == Errc::bad_data || drew.error().code == Errc::timeout;
     if (drew && frame == 0) save("first");
     if (drew && frame == wanted_.frames / 2 && frame > 0) save("middle");
@@ -275,7 +282,7 @@ void Trial::save(std::string_view which) {
   if (written)
     report_["files"].push_back(file.string());
   else
-    report_["error"] = written.error().what;
+    note_error(written.error());
 }
 
 void Trial::try_parameters() {
@@ -301,11 +308,20 @@ bool Trial::reacts(const Parameter& parameter, const renderer::Texture& usual) {
 }  // namespace
 
 Report blank_report(const std::string& source) {
-  return {{"source", source},   {"loaded", false}, {"drawn", false},
-          {"pictures", 0},      {"plain", true},   {"motion", ""},
-          {"open_ms", 0.0},     {"first_ms", 0.0}, {"median_ms", 0.0},
-          {"p99_ms", 0.0},      {"error", ""},     {"end", ""},
-          {"files", Report::array()}, {"reacts_to", Report::array()},
+  return {{"source", source},
+          {"loaded", false},
+          {"drawn", false},
+          {"pictures", 0},
+          {"plain", true},
+          {"motion", ""},
+          {"open_ms", 0.0},
+          {"first_ms", 0.0},
+          {"median_ms", 0.0},
+          {"p99_ms", 0.0},
+          {"error", ""},
+          {"end", ""},
+          {"files", Report::array()},
+          {"reacts_to", Report::array()},
           {"parameters", Report::array()}};
 }
 

@@ -9,7 +9,7 @@ namespace handcast::trial {
 
 /// What is tried.
 struct Wanted {
-  std::string source;            ///< as in a rig file; relative paths start at the current folder
+  std::string source;  ///< as in a rig file; relative paths start at the current folder
   int width_px = 640, height_px = 400;
   int frames = 30;               ///< pictures, 1/30 s apart
   std::filesystem::path folder;  ///< of the pictures; empty: none are written

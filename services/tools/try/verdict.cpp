@@ -52,9 +52,9 @@ std::string verdict(const Report& report) {
 std::string parameter_list(const Report& report) {
   std::string list;
   for (const auto& parameter : report.at("parameters"))
-    list += fmt::format("    {:<16} {:<7} {} ({})\n", text_at(parameter, "name"),
-                        text_at(parameter, "kind"), range_of(parameter),
-                        text_at(parameter, "label"));
+    list +=
+        fmt::format("    {:<16} {:<7} {} ({})\n", text_at(parameter, "name"),
+                    text_at(parameter, "kind"), range_of(parameter), text_at(parameter, "label"));
   return list;
 }
 
@@ -62,10 +62,14 @@ Report count(std::span<const Report> reports) {
   const auto with = [&](const char* key, const Report& value) {
     return std::ranges::count_if(reports, [&](const auto& each) { return each.at(key) == value; });
   };
-  return {{"tried", reports.size()},          {"loaded", with("loaded", true)},
-          {"drawn", with("drawn", true)},     {"moves", with("motion", "moves")},
-          {"reacts", with("motion", "reacts")}, {"still", with("motion", "still")},
-          {"hangs", with("end", "hang")},     {"crashes", with("end", "crash")},
+  return {{"tried", reports.size()},
+          {"loaded", with("loaded", true)},
+          {"drawn", with("drawn", true)},
+          {"moves", with("motion", "moves")},
+          {"reacts", with("motion", "reacts")},
+          {"still", with("motion", "still")},
+          {"hangs", with("end", "hang")},
+          {"crashes", with("end", "crash")},
           {"plain", std::ranges::count_if(reports, [](const auto& each) {
              return each.at("drawn") == true && each.at("plain") == true;
            })}};

@@ -53,8 +53,10 @@ TEST_F(HandsInShaders, WhatFollowsTheHandIsDrawnAgain) {
 }
 
 TEST_F(HandsInShaders, MapsTellBackAndPalm) {
-  const auto source = isf("", "void main() { vec4 at = texture(hand_rest, isf_FragNormCoord); gl_FragColor "
-                              "= vec4(at.w > 0.5, at.w < -0.5, 0, 1); }");
+  const auto source =
+      isf("",
+          "void main() { vec4 at = texture(hand_rest, isf_FragNormCoord); gl_FragColor "
+          "= vec4(at.w > 0.5, at.w < -0.5, 0, 1); }");
   const auto& drawn = draw(*source);
   std::map<std::uint32_t, int> count;
   for (const auto texel : drawn.pixels()) ++count[texel];
@@ -76,9 +78,10 @@ TEST_F(HandsInShaders, JointsLieOnTheMap) {
 }
 
 TEST_F(HandsInShaders, MapsOfTheMomentNeedTheSurface) {
-  const auto source = isf("", "void main() { gl_FragColor = vec4(texture(hand_position, "
-                              "isf_FragNormCoord).z, abs(texture(hand_surface_normal, "
-                              "isf_FragNormCoord).x), 0, 1); }");
+  const auto source = isf("",
+                          "void main() { gl_FragColor = vec4(texture(hand_position, "
+                          "isf_FragNormCoord).z, abs(texture(hand_surface_normal, "
+                          "isf_FragNormCoord).x), 0, 1); }");
   EXPECT_TRUE(source->needs().surface);
   EXPECT_EQ(colour(source), kBlack) << "a hand that is not there";
   const std::vector<glm::vec3> positions(left_.vertex_count(), {0, 0, 0.6f}),
@@ -86,9 +89,9 @@ TEST_F(HandsInShaders, MapsOfTheMomentNeedTheSurface) {
   hand_.positions_m = positions;
   hand_.normals = normals;
   const auto& drawn = draw(*source);
-  EXPECT_EQ(std::ranges::count(drawn.pixels(), kBlack), std::ranges::count_if(drawn.pixels(), [](auto p) {
-              return p != (kBlack | 153u | 255u << 8);
-            }));
+  EXPECT_EQ(std::ranges::count(drawn.pixels(), kBlack),
+            std::ranges::count_if(drawn.pixels(),
+                                  [](auto p) { return p != (kBlack | 153u | 255u << 8); }));
   EXPECT_GT(std::ranges::count(drawn.pixels(), kBlack | 153u | 255u << 8), 2000);
 }
 

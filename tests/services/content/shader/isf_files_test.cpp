@@ -17,16 +17,16 @@ precision highp float;
 varying mediump vec2 nothing;
 void main(void) { highp vec4 c = vec4(1.0, 0.0, 0.0, 1.0); gl_FragColor = c; })")),
             kRed);
-  EXPECT_EQ(colour(isf("", "precision mediump float;\nvoid main() { gl_FragColor = vec4(1, 0, 0, 1); }")),
-            kRed);
+  EXPECT_EQ(
+      colour(isf("", "precision mediump float;\nvoid main() { gl_FragColor = vec4(1, 0, 0, 1); }")),
+      kRed);
 }
 
 TEST_F(IsfFiles, Version1KeepsItsBuffers) {
   for (const auto* buffers : {R"(["last"])", R"({"last": {"WIDTH": "$WIDTH", "HEIGHT": 4}})"}) {
-    const auto source =
-        isf(std::string(R"("DESCRIPTION": "no ISFVSN", "PERSISTENT_BUFFERS": )") + buffers +
-                R"(, "PASSES": [{"TARGET": "last"}, {}])",
-            R"(void main() { if (PASSINDEX == 0) gl_FragColor = vec4(0.2, 0, 0, 1) +
+    const auto source = isf(std::string(R"("DESCRIPTION": "no ISFVSN", "PERSISTENT_BUFFERS": )") +
+                                buffers + R"(, "PASSES": [{"TARGET": "last"}, {}])",
+                            R"(void main() { if (PASSINDEX == 0) gl_FragColor = vec4(0.2, 0, 0, 1) +
                IMG_PIXEL(last, gl_FragCoord.xy); else gl_FragColor = IMG_THIS_PIXEL(last); })");
     EXPECT_EQ(colour(source), kBlack | 51u);
     EXPECT_EQ(colour(source), kBlack | 102u) << buffers;
@@ -34,8 +34,9 @@ TEST_F(IsfFiles, Version1KeepsItsBuffers) {
 }
 
 TEST_F(IsfFiles, ThePictureOfVersion1IsABufferItself) {
-  const auto source = isf(R"("PERSISTENT_BUFFERS": ["last"], "PASSES": [{"TARGET": "last"}])",
-                          "void main() { gl_FragColor = IMG_THIS_PIXEL(last) + vec4(0.2, 0, 0, 1); }");
+  const auto source =
+      isf(R"("PERSISTENT_BUFFERS": ["last"], "PASSES": [{"TARGET": "last"}])",
+          "void main() { gl_FragColor = IMG_THIS_PIXEL(last) + vec4(0.2, 0, 0, 1); }");
   colour(source);
   EXPECT_EQ(colour(source), kBlack | 102u);
 }
@@ -77,8 +78,9 @@ void main() { gl_FragColor = IMG_NORM_PIXEL(inputImage, around[4]); })");
 }
 
 TEST_F(IsfFiles, TheVaryingsOfAMissingVertexShaderAreZero) {
-  EXPECT_NE(colour(isf("", "varying vec2 nothing;\nvoid main() { gl_FragColor = vec4(1, nothing.x * "
-                           "0.0, 0, 1); }")),
+  EXPECT_NE(colour(isf("",
+                       "varying vec2 nothing;\nvoid main() { gl_FragColor = vec4(1, nothing.x * "
+                       "0.0, 0, 1); }")),
             0u);
 }
 
@@ -86,8 +88,10 @@ TEST_F(IsfFiles, AllWaysToReadAPixel) {
   const auto below = numbered();
   for (const auto* way :
        {"IMG_THIS_PIXEL(inputImage)", "IMG_THIS_NORM_PIXEL(inputImage)",
-        "IMG_PIXEL(inputImage, gl_FragCoord.xy)", "IMG_PIXEL(inputImage, gl_FragCoord.xy + vec2(0))",
-        "IMG_NORM_PIXEL(inputImage, isf_FragNormCoord)", "IMG_NORM_PIXEL(inputImage, vv_FragNormCoord.xy)",
+        "IMG_PIXEL(inputImage, gl_FragCoord.xy)",
+        "IMG_PIXEL(inputImage, gl_FragCoord.xy + vec2(0))",
+        "IMG_NORM_PIXEL(inputImage, isf_FragNormCoord)",
+        "IMG_NORM_PIXEL(inputImage, vv_FragNormCoord.xy)",
         "IMG_NORM_PIXEL(inputImage, gl_FragCoord.xy / RENDERSIZE)",
         "texture2D(inputImage, isf_FragNormCoord)", "texture2D(inputImage, isf_FragNormCoord, 0.0)",
         "texture(inputImage, isf_FragNormCoord)", "texture2DRect(inputImage, gl_FragCoord.xy)",
@@ -131,11 +135,11 @@ TEST_F(IsfFiles, InputsBoundLoops) {
 }
 
 TEST_F(IsfFiles, SoundIsThereAndMayBeSilent) {
-  const auto source =
-      isf(R"("INPUTS": [{"NAME": "wave", "TYPE": "audio"},
+  const auto source = isf(R"("INPUTS": [{"NAME": "wave", "TYPE": "audio"},
              {"NAME": "bands", "TYPE": "audioFFT", "MAX": 16}])",
-          "void main() { float loud = IMG_NORM_PIXEL(bands, vec2(0.1, 0.5)).r + "
-          "abs(IMG_NORM_PIXEL(wave, vec2(0.1, 0.5)).r) * 0.0; gl_FragColor = vec4(1, loud * 0.0, 0, 1); }");
+                          "void main() { float loud = IMG_NORM_PIXEL(bands, vec2(0.1, 0.5)).r + "
+                          "abs(IMG_NORM_PIXEL(wave, vec2(0.1, 0.5)).r) * 0.0; gl_FragColor = "
+                          "vec4(1, loud * 0.0, 0, 1); }");
   EXPECT_EQ(colour(source), kRed);
 }
 
@@ -143,23 +147,24 @@ TEST_F(IsfFiles, NamesThatGlslHasTaken) {
   const auto head = [](const std::string& name) {
     return R"("INPUTS": [{"NAME": ")" + name + R"(", "TYPE": "float", "DEFAULT": 1}])";
   };
-  for (const auto* name : {"sample", "input", "filter", "output", "noise", "texture", "smooth",
-                           "active", "half", "flat", "buffer", "common", "shared", "invert", "scale"}) {
+  for (const auto* name :
+       {"sample", "input", "filter", "output", "noise", "texture", "smooth", "active", "half",
+        "flat", "buffer", "common", "shared", "invert", "scale"}) {
     const auto source =
         isf(head(name), std::string("void main() { gl_FragColor = vec4(") + name + ", 0, 0, 1); }");
     EXPECT_EQ(colour(source), kRed) << name;
   }
-  EXPECT_EQ(colour(isf("", "float noise(float filter) { return filter; } void main() { float sample = "
-                           "noise(1.0), input = 0.0; gl_FragColor = vec4(sample, input, 0, 1); }")),
+  EXPECT_EQ(colour(isf("",
+                       "float noise(float filter) { return filter; } void main() { float sample = "
+                       "noise(1.0), input = 0.0; gl_FragColor = vec4(sample, input, 0, 1); }")),
             kRed);
 }
 
 TEST_F(IsfFiles, AnInputThatIsNamedLikeAFunction) {
-  const auto source =
-      isf(R"("INPUTS": [{"NAME": "mix", "TYPE": "float", "DEFAULT": 1},
+  const auto source = isf(R"("INPUTS": [{"NAME": "mix", "TYPE": "float", "DEFAULT": 1},
                         {"NAME": "radius", "TYPE": "float", "DEFAULT": 0},
                         {"NAME": "distance", "TYPE": "float", "DEFAULT": 0}])",
-          "void main() { gl_FragColor = vec4(mix, radius, distance, 1); }");
+                          "void main() { gl_FragColor = vec4(mix, radius, distance, 1); }");
   EXPECT_EQ(colour(source), kRed);
 }
 
@@ -186,10 +191,11 @@ TEST_F(IsfFiles, FunctionsThatAreDefinedBehindTheirUse) {
 }
 
 TEST_F(IsfFiles, LineEndsAndSignsOfOtherSystems) {
-  const auto source = opened("isf", "windows.fs",
-                             "\xef\xbb\xbf/*{\r\n\t\"CREDIT\": \"Zo\xc3\xab \xe2\x80\x94 \xff\",\r\n"
-                             "\t\"INPUTS\": [\r\n\t]\r\n}*/\r\n// na\xc3\xafve\r\nvoid main() {\r\n"
-                             "\tgl_FragColor = vec4(1, 0, 0, 1); // \xe2\x9c\x93\r\n}\r\n");
+  const auto source =
+      opened("isf", "windows.fs",
+             "\xef\xbb\xbf/*{\r\n\t\"CREDIT\": \"Zo\xc3\xab \xe2\x80\x94 \xff\",\r\n"
+             "\t\"INPUTS\": [\r\n\t]\r\n}*/\r\n// na\xc3\xafve\r\nvoid main() {\r\n"
+             "\tgl_FragColor = vec4(1, 0, 0, 1); // \xe2\x9c\x93\r\n}\r\n");
   ASSERT_TRUE(source) << source.error().what;
   EXPECT_EQ(colour(*source), kRed);
   const auto macintosh = opened("isf", "old.fs",
@@ -215,16 +221,19 @@ void main() { gl_FragColor = vec4(a, 0, 0, 1); })");
 }
 
 TEST_F(IsfFiles, MacrosAndOutputsOfEachVersion) {
-  EXPECT_EQ(colour(isf("", "#version 120\n#extension GL_ARB_gpu_shader5 : enable\n#define RED vec4(1, "
-                           "0, 0, 1)\nvoid main() { gl_FragColor = RED; }")),
+  EXPECT_EQ(colour(isf("",
+                       "#version 120\n#extension GL_ARB_gpu_shader5 : enable\n#define RED vec4(1, "
+                       "0, 0, 1)\nvoid main() { gl_FragColor = RED; }")),
             kRed);
   EXPECT_EQ(colour(isf("", "out vec4 result;\nvoid main() { result = vec4(1, 0, 0, 1); }")), kRed);
   EXPECT_EQ(colour(isf("", "void main() { gl_FragData[0] = vec4(1, 0, 0, 1); }")), kRed);
-  EXPECT_EQ(colour(isf("", "void paint(out vec4 c) { c = vec4(1, 0, 0, 1); } void main() { vec4 d; "
-                           "paint(d); gl_FragColor = d; }")),
+  EXPECT_EQ(colour(isf("",
+                       "void paint(out vec4 c) { c = vec4(1, 0, 0, 1); } void main() { vec4 d; "
+                       "paint(d); gl_FragColor = d; }")),
             kRed);
-  EXPECT_EQ(colour(isf("", "void main() { gl_FragColor = vec4(1, 0, 0, 1); if (isf_FragNormCoord.x >= "
-                           "0.0) return; gl_FragColor = vec4(0); }")),
+  EXPECT_EQ(colour(isf("",
+                       "void main() { gl_FragColor = vec4(1, 0, 0, 1); if (isf_FragNormCoord.x >= "
+                       "0.0) return; gl_FragColor = vec4(0); }")),
             kRed);
 }
 
@@ -234,10 +243,11 @@ TEST_F(IsfFiles, WhatIsDiscardedIsTransparent) {
 
 TEST_F(IsfFiles, ASizeOfZeroOrOfNothingIsOnePixel) {
   for (const auto* width : {"0", "\"$WIDTH / 0\"", "-5", "\"0.0 / 0.0\"", "\"$WIDTH * 0.001\""})
-    EXPECT_EQ(colour(isf(std::string(R"("PASSES": [{"TARGET": "a", "WIDTH": )") + width + "}, {}]",
-                         "void main() { gl_FragColor = PASSINDEX == 0 ? vec4(RENDERSIZE.x, 0, 0, 1) "
-                         ": IMG_THIS_PIXEL(a); }")),
-              kRed)
+    EXPECT_EQ(
+        colour(isf(std::string(R"("PASSES": [{"TARGET": "a", "WIDTH": )") + width + "}, {}]",
+                   "void main() { gl_FragColor = PASSINDEX == 0 ? vec4(RENDERSIZE.x, 0, 0, 1) "
+                   ": IMG_THIS_PIXEL(a); }")),
+        kRed)
         << width;
 }
 

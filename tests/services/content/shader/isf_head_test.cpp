@@ -91,15 +91,17 @@ TEST(IsfHead, Version1NamesItsBuffersInAListOrADictionary) {
     const auto head = head_of(std::string(R"({"PERSISTENT_BUFFERS": )") + buffers +
                               R"(, "PASSES": [{"TARGET": "last"}, {}]})");
     EXPECT_TRUE(head.passes[0].is_persistent) << buffers;
-    EXPECT_EQ(head.passes[0].width.has_value(), std::string(buffers).find("WIDTH") != std::string::npos);
+    EXPECT_EQ(head.passes[0].width.has_value(),
+              std::string(buffers).find("WIDTH") != std::string::npos);
     EXPECT_THAT(head.buffers, IsEmpty());
   }
   EXPECT_EQ(head_of(R"({"PERSISTENT_BUFFERS": ["alone"]})").buffers.size(), 1u);
 }
 
 TEST(IsfHead, ImportsAreAListOrADictionary) {
-  for (const auto* imports : {R"({"logo": {"PATH": "a.png"}})", R"([{"NAME": "logo", "PATH": "a.png"}])",
-                              R"({"logo": "a.png"})", R"({"logo": {"PATH": ["a.png", "b.png"]}})"}) {
+  for (const auto* imports :
+       {R"({"logo": {"PATH": "a.png"}})", R"([{"NAME": "logo", "PATH": "a.png"}])",
+        R"({"logo": "a.png"})", R"({"logo": {"PATH": ["a.png", "b.png"]}})"}) {
     const auto head = head_of(std::string(R"({"IMPORTED": )") + imports + "}");
     ASSERT_EQ(head.imports.size(), 1u) << imports;
     EXPECT_EQ(head.imports[0].name, "logo");
@@ -112,19 +114,21 @@ TEST(IsfHead, WhatIsNoHeadIsNamed) {
   EXPECT_THAT(head_fault("/* a comment */ void main() {}"), HasSubstr("no ISF file"));
   EXPECT_THAT(head_fault("/*{ \"A\": 1"), HasSubstr("no end"));
   EXPECT_THAT(head_fault("// by me\n/*{\n\"A\": 1\n\"B\": 2\n}*/"), HasSubstr("line 4"));
-  EXPECT_THAT(head_fault(R"(/*{"INPUTS": [{"NAME": "a", "TYPE": "flot"}]}*/)"), HasSubstr("'flot'"));
-  EXPECT_THAT(head_fault(R"(/*{"INPUTS": [{"NAME": "a b", "TYPE": "float"}]}*/)"), HasSubstr("'a b'"));
+  EXPECT_THAT(head_fault(R"(/*{"INPUTS": [{"NAME": "a", "TYPE": "flot"}]}*/)"),
+              HasSubstr("'flot'"));
+  EXPECT_THAT(head_fault(R"(/*{"INPUTS": [{"NAME": "a b", "TYPE": "float"}]}*/)"),
+              HasSubstr("'a b'"));
   EXPECT_THAT(head_fault(R"(/*{"PASSES": [{"WIDTH": "$WIDTH /"}]}*/)"), HasSubstr("'$WIDTH /'"));
   EXPECT_THAT(head_fault(R"(/*{"PASSES": [{"WIDTH": "$nothing"}]}*/)"), HasSubstr("'nothing'"));
   EXPECT_THAT(head_fault(R"(/*{"PASSES": [{"TARGET": "a-b"}]}*/)"), HasSubstr("'a-b'"));
 }
 
 TEST(IsfHead, OddJsonIsAFaultOrNothingButNoCrash) {
-  for (const auto* json : {"{\"INPUTS\": 3}", "{\"INPUTS\": [[]]}", "{\"INPUTS\": {\"a\": 1}}",
-                           "{\"PASSES\": \"x\"}", "{\"PASSES\": [1, \"a\", null]}",
-                           "{\"PERSISTENT_BUFFERS\": [[1]]}", "{\"IMPORTED\": 7}",
-                           "{\"INPUTS\": [{\"NAME\": {}, \"TYPE\": []}]}", "{}}", "{\"IMPORTED\": [1]}",
-                           "{\"INPUTS\": [{\"NAME\": \"a\", \"TYPE\": \"long\", \"VALUES\": {}}]}"})
+  for (const auto* json :
+       {"{\"INPUTS\": 3}", "{\"INPUTS\": [[]]}", "{\"INPUTS\": {\"a\": 1}}", "{\"PASSES\": \"x\"}",
+        "{\"PASSES\": [1, \"a\", null]}", "{\"PERSISTENT_BUFFERS\": [[1]]}", "{\"IMPORTED\": 7}",
+        "{\"INPUTS\": [{\"NAME\": {}, \"TYPE\": []}]}", "{}}", "{\"IMPORTED\": [1]}",
+        "{\"INPUTS\": [{\"NAME\": \"a\", \"TYPE\": \"long\", \"VALUES\": {}}]}"})
     (void)parse_isf_head("/*" + std::string(json) + "*/");
   (void)parse_isf_head("/*{" + std::string(100'000, '[') + "}*/");
 }

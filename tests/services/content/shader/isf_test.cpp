@@ -9,8 +9,9 @@ namespace {
 using Isf = ShaderTest;
 
 TEST_F(Isf, RowZeroIsTheTop) {
-  const auto source = isf("", "void main() { gl_FragColor = isf_FragNormCoord.y > 0.5 ? vec4(1, 0, "
-                              "0, 1) : vec4(0, 0, isf_FragNormCoord.x < 0.5, 1); }");
+  const auto source = isf("",
+                          "void main() { gl_FragColor = isf_FragNormCoord.y > 0.5 ? vec4(1, 0, "
+                          "0, 1) : vec4(0, 0, isf_FragNormCoord.x < 0.5, 1); }");
   const auto& drawn = draw(*source);
   EXPECT_EQ(drawn.at(0, 0), kRed);
   EXPECT_EQ(drawn.at(7, 1), kRed);
@@ -137,7 +138,8 @@ TEST_F(Isf, PassesHaveTheirOwnSizes) {
 }
 
 TEST_F(Isf, PersistentPassesKeepTheirPicture) {
-  const auto source = isf(R"("PASSES": [{"TARGET": "last", "PERSISTENT": true}, {}])", R"(void main() {
+  const auto source =
+      isf(R"("PASSES": [{"TARGET": "last", "PERSISTENT": true}, {}])", R"(void main() {
     gl_FragColor = PASSINDEX == 0 ? IMG_THIS_PIXEL(last) + vec4(0.2, 0, 0, 1) : IMG_THIS_PIXEL(last);
   })");
   EXPECT_EQ(colour(source), kBlack | 51u);
@@ -162,10 +164,12 @@ TEST_F(Isf, ThePictureOfTheLastPassIsShownWhateverItsSizeAndName) {
 }
 
 TEST_F(Isf, AVertexShaderMovesThePicture) {
-  write("it.vs", "out vec2 shifted;\nvoid main() { isf_vertShaderInit(); shifted = "
-                 "isf_FragNormCoord + vec2(0.5, 0); gl_Position.x *= 0.5; }");
-  const auto source = isf("", "in vec2 shifted;\nvoid main() { gl_FragColor = vec4(shifted.x > 1.0, "
-                              "0, 0, 1); }");
+  write("it.vs",
+        "out vec2 shifted;\nvoid main() { isf_vertShaderInit(); shifted = "
+        "isf_FragNormCoord + vec2(0.5, 0); gl_Position.x *= 0.5; }");
+  const auto source = isf("",
+                          "in vec2 shifted;\nvoid main() { gl_FragColor = vec4(shifted.x > 1.0, "
+                          "0, 0, 1); }");
   const auto& drawn = draw(*source);
   EXPECT_EQ(drawn.at(0, 0), 0u) << "nothing is drawn beside it";
   EXPECT_EQ(drawn.at(2, 0), kBlack);
@@ -175,9 +179,10 @@ TEST_F(Isf, AVertexShaderMovesThePicture) {
 TEST_F(Isf, ImagesComeFromImportsAndFromParameters) {
   ASSERT_TRUE(renderer::write_png(scratch_.path() / "red.png", Texture(2, 2, kRed).view()));
   ASSERT_TRUE(renderer::write_png(scratch_.path() / "blue.png", Texture(2, 2, kBlue).view()));
-  const auto source = isf(R"("IMPORTED": {"logo": {"PATH": "red.png"}},
+  const auto source =
+      isf(R"("IMPORTED": {"logo": {"PATH": "red.png"}},
       "INPUTS": [{"NAME": "other", "TYPE": "image"}])",
-                          "void main() { gl_FragColor = IMG_THIS_PIXEL(logo) + IMG_THIS_PIXEL(other); }");
+          "void main() { gl_FragColor = IMG_THIS_PIXEL(logo) + IMG_THIS_PIXEL(other); }");
   EXPECT_EQ(colour(source), kRed) << "an image that is not set is transparent";
   ASSERT_TRUE(source->set("other", (scratch_.path() / "blue.png").string()));
   EXPECT_EQ(colour(source), 0xffff00ffu);
@@ -192,13 +197,14 @@ TEST_F(Isf, AnErrorIsNamedWithItsLine) {
   EXPECT_THAT(fault("isf", "/*{\n}*/\n\nvoid main() {\n  gl_FragColor = vec4(nothing);\n}\n"),
               testing::AllOf(HasSubstr("it.fs:5:"), HasSubstr("nothing"),
                              HasSubstr("gl_FragColor = vec4(nothing);")));
-  EXPECT_THAT(fault("isf", "/*{}*/ /* two\nlines */\n#version 120\nvoid main() {\n  sample(1);\n}"),
-              testing::AllOf(HasSubstr("it.fs:5:"), HasSubstr("sample"),
-                             testing::Not(HasSubstr("hc_"))));
+  EXPECT_THAT(
+      fault("isf", "/*{}*/ /* two\nlines */\n#version 120\nvoid main() {\n  sample(1);\n}"),
+      testing::AllOf(HasSubstr("it.fs:5:"), HasSubstr("sample"), testing::Not(HasSubstr("hc_"))));
   EXPECT_THAT(fault("isf", "/*{\n}*/\nvoid main() {\n  gl_FragColor = vec4(1);\n"),
               HasSubstr("it.fs:"));
   write("it.vs", "\nvoid main() {\n  isf_vertShaderInit();\n  oops;\n}\n");
-  EXPECT_THAT(fault("isf", "/*{}*/ void main() { gl_FragColor = vec4(1); }"), HasSubstr("it.vs:4:"));
+  EXPECT_THAT(fault("isf", "/*{}*/ void main() { gl_FragColor = vec4(1); }"),
+              HasSubstr("it.vs:4:"));
 }
 
 TEST_F(Isf, FilesThatAreNoneAreNamed) {

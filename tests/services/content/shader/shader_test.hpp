@@ -104,8 +104,8 @@ inline Texture numbered(int width = 8, int height = 4) {
   Texture picture(width, height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
-      picture.at(x, y) = kBlack | static_cast<std::uint32_t>(20 * x) |
-                         static_cast<std::uint32_t>(50 * y) << 8;
+      picture.at(x, y) =
+          kBlack | static_cast<std::uint32_t>(20 * x) | static_cast<std::uint32_t>(50 * y) << 8;
   return picture;
 }
 

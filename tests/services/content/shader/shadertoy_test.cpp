@@ -11,17 +11,19 @@ TEST_F(Shadertoy, AnImageWithItsTimeAndSize) {
   moment_.time_s = 0.2;
   moment_.step_s = 0.4;
   moment_.frame = 3;
-  EXPECT_EQ(colour(toy("void mainImage(out vec4 fragColor, in vec2 fragCoord) {\n"
-                       "  bool fits = iResolution == vec3(8.0, 4.0, 1.0) && iFrame == 3 && iFrameRate "
-                       "== 2.5 && iSampleRate > 1.0;\n"
-                       "  fragColor = vec4(iTime, iTimeDelta, fits ? 1.0 : 0.0, 0.0);\n}\n")),
-            0xffff6633u)
+  EXPECT_EQ(
+      colour(toy("void mainImage(out vec4 fragColor, in vec2 fragCoord) {\n"
+                 "  bool fits = iResolution == vec3(8.0, 4.0, 1.0) && iFrame == 3 && iFrameRate "
+                 "== 2.5 && iSampleRate > 1.0;\n"
+                 "  fragColor = vec4(iTime, iTimeDelta, fits ? 1.0 : 0.0, 0.0);\n}\n")),
+      0xffff6633u)
       << "alpha does not matter";
 }
 
 TEST_F(Shadertoy, RowZeroIsTheTop) {
-  const auto source = toy("void mainImage(out vec4 c, in vec2 p) { c = p.y > 2.0 ? vec4(1, 0, 0, 1) : "
-                          "vec4(0, p.x < 4.0, 0, 1); }");
+  const auto source =
+      toy("void mainImage(out vec4 c, in vec2 p) { c = p.y > 2.0 ? vec4(1, 0, 0, 1) : "
+          "vec4(0, p.x < 4.0, 0, 1); }");
   const auto& drawn = draw(*source);
   EXPECT_EQ(drawn.at(0, 0), kRed);
   EXPECT_EQ(drawn.at(0, 3), kGreen);
@@ -33,14 +35,16 @@ TEST_F(Shadertoy, TheDateCountsMonthsFromZero) {
   moment_.date.tm_mon = 10;
   moment_.date.tm_mday = 28;
   moment_.day_s = 60;
-  EXPECT_EQ(colour(toy("void mainImage(out vec4 c, in vec2 p) { c = vec4(iDate == vec4(2026, 10, 28, "
-                       "60)); }")),
-            kWhite);
+  EXPECT_EQ(
+      colour(toy("void mainImage(out vec4 c, in vec2 p) { c = vec4(iDate == vec4(2026, 10, 28, "
+                 "60)); }")),
+      kWhite);
 }
 
 TEST_F(Shadertoy, TheMouseIsAParameter) {
-  const auto source = toy("void mainImage(out vec4 c, in vec2 p) { c = iMouse.z > 0.0 ? "
-                          "vec4(iMouse.xy / iResolution.xy, 0, 1) : vec4(0, 0, 1, 1); }");
+  const auto source =
+      toy("void mainImage(out vec4 c, in vec2 p) { c = iMouse.z > 0.0 ? "
+          "vec4(iMouse.xy / iResolution.xy, 0, 1) : vec4(0, 0, 1, 1); }");
   EXPECT_EQ(colour(source), kBlue) << "nobody has touched it";
   draw(*source);
   EXPECT_FALSE(is_new_) << "it does not depend on the time";
@@ -81,17 +85,20 @@ void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); 
 TEST_F(Shadertoy, PartsMayBeFilesOfTheirOwn) {
   write("it.common.frag", "#define RED vec4(1, 0, 0, 1)\n");
   write("it.b.frag", "void mainImage(out vec4 c, in vec2 p) { c = RED; }\n");
-  EXPECT_EQ(colour(toy("void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel1, ivec2(p), "
-                       "0) * RED; }")),
-            kRed);
-  EXPECT_THAT(fault("shadertoy", "//! buffer B\nvoid mainImage(out vec4 c, in vec2 p) {}\n//! image\n"
-                                 "void mainImage(out vec4 c, in vec2 p) {}\n"),
+  EXPECT_EQ(
+      colour(toy("void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel1, ivec2(p), "
+                 "0) * RED; }")),
+      kRed);
+  EXPECT_THAT(fault("shadertoy",
+                    "//! buffer B\nvoid mainImage(out vec4 c, in vec2 p) {}\n//! image\n"
+                    "void mainImage(out vec4 c, in vec2 p) {}\n"),
               HasSubstr("it.frag:1: this part is in it.b.frag, too"));
 }
 
 TEST_F(Shadertoy, AFilterReadsItsInput) {
-  const auto source = toy("//! iChannel1 = input\nvoid mainImage(out vec4 c, in vec2 p) { c = "
-                          "texture(iChannel1, p / iChannelResolution[1].xy); }");
+  const auto source =
+      toy("//! iChannel1 = input\nvoid mainImage(out vec4 c, in vec2 p) { c = "
+          "texture(iChannel1, p / iChannelResolution[1].xy); }");
   EXPECT_EQ(source->inputs(), 1);
   const auto below = numbered();
   EXPECT_EQ(draw(*source, {below}).pixels(), below.pixels());
@@ -121,9 +128,10 @@ TEST_F(Shadertoy, WhatIsNotFiniteIsZero) {
 TEST_F(Shadertoy, AnErrorIsNamedWithTheLineOfItsFile) {
   EXPECT_THAT(fault("shadertoy", "void mainImage(out vec4 c, in vec2 p) {\n\n  c = oops;\n}\n"),
               HasSubstr("it.frag:3:"));
-  const std::string whole = "//! common\nfloat f() { return 1.0; }\n//! buffer A\nvoid mainImage(out "
-                            "vec4 c, in vec2 p) {\n  c = vec4(1);\n}\n//! image\nvoid mainImage(out "
-                            "vec4 c, in vec2 p) {\n  c = vec4(f());\n}\n";
+  const std::string whole =
+      "//! common\nfloat f() { return 1.0; }\n//! buffer A\nvoid mainImage(out "
+      "vec4 c, in vec2 p) {\n  c = vec4(1);\n}\n//! image\nvoid mainImage(out "
+      "vec4 c, in vec2 p) {\n  c = vec4(f());\n}\n";
   const auto broken = [&](const std::string& what) {
     auto text = whole;
     text.replace(text.find(what), what.size(), "oops");
@@ -140,12 +148,14 @@ TEST_F(Shadertoy, AnErrorIsNamedWithTheLineOfItsFile) {
 
 TEST_F(Shadertoy, WhatMakesNoSenseIsNamed) {
   const std::string image = "void mainImage(out vec4 c, in vec2 p) { c = vec4(1); }";
-  EXPECT_THAT(fault("shadertoy", "void main() {}"), HasSubstr("it.frag: the image has no mainImage"));
+  EXPECT_THAT(fault("shadertoy", "void main() {}"),
+              HasSubstr("it.frag: the image has no mainImage"));
   EXPECT_THAT(fault("shadertoy", "//! buffer A\n" + image), HasSubstr("it has no image"));
   EXPECT_THAT(fault("shadertoy", "//! buffer A\n//! image\n" + image),
               HasSubstr("the buffer A has no mainImage"));
   EXPECT_THAT(fault("shadertoy", "\n//! buffer E\n" + image), HasSubstr("it.frag:2: 'buffer E'"));
-  EXPECT_THAT(fault("shadertoy", "//! iChannel0 = film.mp4\n" + image), HasSubstr("'film.mp4' is no channel"));
+  EXPECT_THAT(fault("shadertoy", "//! iChannel0 = film.mp4\n" + image),
+              HasSubstr("'film.mp4' is no channel"));
   EXPECT_THAT(fault("shadertoy", "//! iChannel7 = input\n" + image), HasSubstr("it.frag:1:"));
   EXPECT_THAT(fault("shadertoy", "//! iChannel0 = buffer B\n" + image), HasSubstr("the buffer B"));
   EXPECT_THAT(fault("shadertoy", "//! iChannel0 = gone.png\n" + image), HasSubstr("gone.png"));
