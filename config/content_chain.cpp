@@ -15,36 +15,15 @@ namespace {
 
 constexpr std::string_view kBetween = " | ";
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(' ');
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
+/// A part of a text between spaces: NAME=VALUE, or something else.
+struct Word {
+  std::string_view written;
+  std::string name, value;  ///< empty if it is no parameter
+};
 
-/// "name=value" at the end of a text, taken off it; empty if there is none.
-std::optional<std::pair<std::string, std::string>> last_parameter(std::string_view& text) {
-  std::size_t begin = text.npos, end = text.size();
-  std::string_view value;
-  if (text.ends_with('"') && text.size() > 1) {
-    const auto quote = text.rfind("=\"", text.size() - 2);
-    if (quote == text.npos) return std::nullopt;
-    value = text.substr(quote + 2, text.size() - quote - 3);
-    end = quote;
-  } else {
-    const auto equals = text.rfind('=');
-    if (equals == text.npos || text.find(' ', equals) != text.npos) return std::nullopt;
-    value = text.substr(equals + 1);
-    end = equals;
-  }
-  begin = text.rfind(' ', end);
-  if (begin == text.npos) return std::nullopt;
-  const auto name = text.substr(begin + 1, end - begin - 1);
-  const bool is_name =
-      !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
-      std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
-  if (!is_name) return std::nullopt;
-  text = trimmed(text.substr(0, begin));
-  return std::pair{std::string(name), std::string(value)};
+bool is_name(std::string_view text) {
+  return !text.empty() && !std::isdigit(static_cast<unsigned char>(text[0])) &&
+         std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
 }
 
 bool is_kind(std::string_view word) {
@@ -53,55 +32,158 @@ bool is_kind(std::string_view word) {
          });
 }
 
-Result<ContentElement> parse_element(std::string_view text) {
-  ContentElement element;
-  std::string_view rest = trimmed(text);
-  if (std::ranges::count(rest, '"') % 2 != 0)
-    return fail(Errc::bad_config, fmt::format("{} has a quote that is not closed", quote(rest)));
-  while (auto parameter = last_parameter(rest))
-    element.parameters.insert(element.parameters.begin(), std::move(*parameter));
-  const auto colon = rest.find(':');
-  const bool is_address = rest.find("://") == colon && colon != rest.npos;
-  if (colon != rest.npos && !is_address && is_kind(rest.substr(0, colon))) {
-    element.kind = rest.substr(0, colon);
-    rest = trimmed(rest.substr(colon + 1));
-  } else {
-    element.kind = content_kind_of(rest);
-    if (element.kind.empty()) element.kind = "look";
+/// Takes a quoted text with its quotes off the beginning of `rest`; \" and \\ stand for " and \.
+/// Empty if the quote is not closed before a space or the end.
+std::optional<std::string> take_quoted(std::string_view& rest) {
+  std::string text;
+  for (std::size_t i = 1; i < rest.size(); ++i) {
+    const bool is_escape =
+        rest[i] == '\\' && i + 1 < rest.size() && (rest[i + 1] == '"' || rest[i + 1] == '\\');
+    if (is_escape) {
+      text += rest[++i];
+    } else if (rest[i] == '"') {
+      rest.remove_prefix(i + 1);
+      if (!rest.empty() && rest[0] != ' ') return std::nullopt;
+      return text;
+    } else {
+      text += rest[i];
+    }
   }
-  if (element.kind == "builtin") element.kind = "pattern";
-  element.what = rest;
-  if (element.what.empty() && element.kind == "look")
+  return std::nullopt;
+}
+
+void skip_spaces(std::string_view& rest) {
+  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
+}
+
+tl::unexpected<Error> not_closed(std::string_view text) {
+  return fail(
+      Errc::bad_config,
+      fmt::format("{} has a quote that is not closed, or that no space follows", quote(text)));
+}
+
+/// Takes the next word off a text that begins with one.
+Result<Word> take_word(std::string_view& rest) {
+  Word word;
+  const std::string_view whole = rest;
+  auto end = std::min(rest.find(' '), rest.size());
+  const auto equals = rest.substr(0, end).find('=');
+  if (equals != rest.npos && is_name(rest.substr(0, equals))) {
+    word.name = rest.substr(0, equals);
+    word.value = rest.substr(equals + 1, end - equals - 1);
+    if (word.value.starts_with('"')) {
+      std::string_view quoted = rest.substr(equals + 1);
+      auto value = take_quoted(quoted);
+      if (!value) return not_closed(whole);
+      word.value = std::move(*value);
+      end = rest.size() - quoted.size();
+    }
+  }
+  word.written = rest.substr(0, end);
+  rest.remove_prefix(end);
+  return word;
+}
+
+bool is_file_kind(std::string_view kind) {
+  return kind == "picture" || kind == "film" || kind == "isf" || kind == "shadertoy";
+}
+
+/// Takes "kind:" off the beginning of a text; "" if there is none.
+std::string take_kind(std::string_view& rest) {
+  const auto colon = rest.find(':');
+  if (colon == rest.npos || rest.find("://") == colon || !is_kind(rest.substr(0, colon))) return {};
+  const std::string kind(rest.substr(0, colon));
+  rest.remove_prefix(colon + 1);
+  skip_spaces(rest);
+  return kind;
+}
+
+Result<void> settle_kind(ContentElement& element) {
+  auto& kind = element.kind;
+  if (kind.empty()) kind = content_kind_of(element.what);
+  if (kind.empty()) kind = "look";
+  if (kind == "builtin") kind = "pattern";
+  if (!element.what.empty() ||
+      (kind != "look" && kind != "pattern" && kind != "capture" && !is_file_kind(kind)))
+    return {};
+  return fail(Errc::bad_config,
+              "content is empty; name a look, a file or a source, e.g. \"builtin:atlas\"");
+}
+
+/// Takes an element and the bar behind it off the beginning of a text.
+Result<ContentElement> take_element(std::string_view& rest, bool& has_next) {
+  ContentElement element;
+  has_next = false;
+  skip_spaces(rest);
+  element.kind = take_kind(rest);
+  const bool is_quoted = rest.starts_with('"');
+  if (is_quoted) {
+    const std::string_view whole = rest;
+    auto what = take_quoted(rest);
+    if (!what) return not_closed(whole);
+    element.what = std::move(*what);
+    skip_spaces(rest);
+  }
+  const char* const begin = rest.data();
+  const char* end = begin;  // of what is no parameter
+  for (; !rest.empty() && !has_next; skip_spaces(rest)) {
+    auto word = take_word(rest);
+    if (!word) return tl::make_unexpected(word.error());
+    has_next = word->written == "|";
+    if (has_next) continue;
+    if (word->name.empty()) {  // the parameters before it are none
+      element.parameters.clear();
+      end = word->written.data() + word->written.size();
+    } else {
+      element.parameters.emplace_back(std::move(word->name), std::move(word->value));
+    }
+  }
+  if (is_quoted && end != begin)
     return fail(Errc::bad_config,
-                "content is empty; name a look, a file or a source, e.g. \"builtin:atlas\"");
+                fmt::format("behind {} in quotes there is {}, which is no name=value",
+                            quote(element.what), quote({begin, end})));
+  if (!is_quoted) element.what = std::string(begin, end);
+  if (auto settled = settle_kind(element); !settled) return tl::make_unexpected(settled.error());
   return element;
 }
 
-std::string print_element(const ContentElement& element) {
-  std::string text = element.what;
-  const auto named = parse_element(element.what);
-  const bool says_it = named && named->kind == element.kind && named->what == element.what &&
-                       named->parameters.empty();
-  const std::string_view kind = element.kind == "pattern" ? "builtin" : element.kind;
-  if (!says_it) text = fmt::format("{}:{}", kind, element.what);
-  for (const auto& [name, value] : element.parameters) {
-    const bool is_quoted = value.empty() || value.find(' ') != value.npos;
-    text += is_quoted ? fmt::format(" {}=\"{}\"", name, value) : fmt::format(" {}={}", name, value);
+std::string in_quotes(std::string_view text) {
+  std::string written = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') written += '\\';
+    written += c;
   }
-  return text;
+  return written + '"';
+}
+
+std::string print_element(const ContentElement& element) {
+  std::string parameters;
+  for (const auto& [name, value] : element.parameters) {
+    const bool is_plain =
+        !value.empty() && value.find(' ') == value.npos && !value.starts_with('"');
+    parameters += fmt::format(" {}={}", name, is_plain ? value : in_quotes(value));
+  }
+  const std::string kind = element.kind == "pattern" ? "builtin" : element.kind;
+  // The shortest text that is read as the same.
+  for (const auto& written : {element.what, fmt::format("{}:{}", kind, element.what)}) {
+    std::string_view rest = written;
+    bool has_next = false;
+    const auto read = take_element(rest, has_next);
+    if (read && read->kind == element.kind && read->what == element.what &&
+        read->parameters.empty() && !has_next)
+      return written + parameters;
+  }
+  return kind + ":" + in_quotes(element.what) + parameters;
 }
 
 }  // namespace
 
 Result<ContentChain> parse_content(std::string_view text) {
   ContentChain chain;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const auto end = std::min(text.find(kBetween, begin), text.size());
-    auto element = parse_element(text.substr(begin, end - begin));
+  for (bool has_next = true; has_next;) {
+    auto element = take_element(text, has_next);
     if (!element) return tl::make_unexpected(element.error());
     chain.push_back(std::move(*element));
-    begin = end + kBetween.size();
-    if (end == text.size()) break;
   }
   return chain;
 }
@@ -146,10 +228,8 @@ std::string_view content_kind_of(std::string_view file) {
 }
 
 bool is_content_file(const ContentElement& element) {
-  const auto& kind = element.kind;
-  const bool has_file = kind == "picture" || kind == "film" || kind == "isf" || kind == "shadertoy";
-  const bool is_address = kind == "film" && element.what.find("://") != std::string::npos;
-  return has_file && !element.what.empty() && !is_address;
+  const bool is_address = element.kind == "film" && element.what.find("://") != std::string::npos;
+  return is_file_kind(element.kind) && !element.what.empty() && !is_address;
 }
 
 bool is_still(const ContentChain& chain) {

@@ -23,11 +23,13 @@ struct ContentElement {
 ///     element    = [ kind ":" ] what *( " " name "=" value )
 ///
 /// "film:a.mp4 speed=0.5 | isf:kaleidoscope.fs sides=6 | text:Hello colour=#ff8800 opacity=0.5".
-/// A value with spaces is put in double quotes. Without a kind, the end of a file's name says it
+/// `what` may have spaces. It is put in double quotes if it ends with what looks like a parameter
+/// or has a bar between spaces, and so is a value with spaces; within quotes, \" and \\ stand for "
+/// and \. Without a kind, the end of a file's name says it
 /// (content_kind_of()); a name without an end is a look. "builtin:NAME" is "pattern:NAME".
 using ContentChain = std::vector<ContentElement>;
 
-/// Reads it. Errors (bad_config), each a sentence: it is empty, an element is, a quote is not
+/// Reads it. Errors (bad_config), each a sentence: it or an element is empty, a quote is not
 /// closed.
 Result<ContentChain> parse_content(std::string_view text);
 /// Writes it in the shortest way, so that parse_content() reads the same.

@@ -69,9 +69,8 @@ void resolve_contents(const Listing& listing, const std::filesystem::path& folde
 }
 
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
-  for (const auto* service :
-       {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector", "dlp", "content",
-        "observer"})
+  for (const auto* service : {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector",
+                              "dlp", "content", "observer"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,

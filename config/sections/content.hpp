@@ -34,14 +34,14 @@ void describe(Visitor& visitor, Content& content) {
   visitor.field("transition", content.transition,
                 "How one content becomes another: cut, fade, or an ISF transition, e.g. "
                 "\"isf:wipe.fs\".");
-  visitor.field("transition_s", content.transition_s, between(0, 60, "s"),
-                "How long that takes.");
+  visitor.field("transition_s", content.transition_s, between(0, 60, "s"), "How long that takes.");
   visitor.field("rate_hz", content.rate_hz, between(1, 240, "Hz"),
                 "Pictures per second of content that moves.");
   visitor.field("width_px", content.width_px, between(128, 2048, "px"),
                 "Width of the pictures of the content service; `handcast template` has the "
                 "proportions 8:5.");
-  visitor.field("height_px", content.height_px, between(128, 2048, "px"), "Height of the pictures.");
+  visitor.field("height_px", content.height_px, between(128, 2048, "px"),
+                "Height of the pictures.");
   visitor.field(
       "shading", content.shading, between(0, 1),
       "Strength of the shading by a light that shines along the camera's axis. 0: no shading.");

@@ -10,7 +10,8 @@
 
 namespace handcast::client {
 
-/// A ring of a rig that is up, mapped read-only unless a tool may write to it (msg::kTestPictures).
+/// A ring of a rig that is up, mapped read-only unless a tool may write to it (msg::kTestPictures,
+/// msg::kGuestPictures).
 struct RigRing {
   std::string rig;       ///< name of the rig
   ipc::Segment segment;  ///< the memory of the ring

@@ -25,8 +25,8 @@ struct MessageText {
   }
   /// The text up to the first zero, also of torn or hostile bytes.
   std::string_view view() const {
-    return {bytes.data(), static_cast<std::size_t>(std::find(bytes.begin(), bytes.end(), '\0') -
-                                                   bytes.begin())};
+    return {bytes.data(),
+            static_cast<std::size_t>(std::find(bytes.begin(), bytes.end(), '\0') - bytes.begin())};
   }
 };
 
@@ -41,9 +41,9 @@ inline constexpr std::string_view kContentCommands = "content.commands";
 struct ContentCommand {
   static constexpr std::string_view layout = "ContentCommand/1";  ///< see type_hash()
 
-  Header header;               ///< frame_id: number of the command, distinct from all others
-  std::uint32_t hands = 0b11;  ///< bit 0: the left hand, bit 1: the right one
-  float transition_s = -1;     ///< negative: as in the settings
+  Header header;                ///< frame_id: number of the command, distinct from all others
+  std::uint32_t hands = 0b11;   ///< bit 0: the left hand, bit 1: the right one
+  float transition_s = -1;      ///< negative: as in the settings
   MessageText<512> transition;  ///< as content.transition; empty: as in the settings
   MessageText<4096> content;    ///< as content.left
 
@@ -55,7 +55,7 @@ struct ContentCommand {
 struct ShownContent {
   /// ContentCommand::header.frame_id of the last command for the hand; 0: none.
   std::uint64_t command = 0;
-  float draw_ms = 0;          ///< what a picture took, smoothed
+  float draw_ms = 0;           ///< what a picture took, smoothed
   std::uint32_t pictures = 0;  ///< that were published
   MessageText<4096> content;   ///< as content.left
   /// Why the last command was refused, or what is wrong with the content; empty if nothing is.
@@ -67,7 +67,7 @@ struct ShownContent {
 struct ContentState {
   static constexpr std::string_view layout = "ContentState/1";  ///< see type_hash()
 
-  Header header;                               ///< frame_id: counted by the service
+  Header header;                              ///< frame_id: counted by the service
   std::array<ShownContent, kMaxHands> hands;  ///< left, right
 };
 

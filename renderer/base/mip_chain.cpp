@@ -57,8 +57,8 @@ Image<Light> halved(int width, int height, const LightAt& light_at) {
       const Light a = light_at(left, up), b = light_at(right, up), c = light_at(left, low),
                   d = light_at(right, low);
       for (std::size_t channel = 0; channel < a.size(); ++channel)
-        out.at(x, y)[channel] = static_cast<std::uint16_t>(
-            (a[channel] + b[channel] + c[channel] + d[channel] + 2) / 4);
+        out.at(x, y)[channel] =
+            static_cast<std::uint16_t>((a[channel] + b[channel] + c[channel] + d[channel] + 2) / 4);
     }
   }
   return out;

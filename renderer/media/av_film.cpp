@@ -1,55 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // libhandcast-film.so.
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
 }
 
 #include <algorithm>
-#include <cstring>
 #include <exception>
 #include <utility>
 #include <vector>
 
+#include "renderer/media/av_handles.hpp"
 #include "renderer/media/film_reader.hpp"
 #include "renderer/media/orientation.hpp"
 
 namespace {
 
+namespace av = handcast::renderer::av;
 using handcast::renderer::Image;
-
-template <auto free>
-struct Freeing {
-  template <class T>
-  void operator()(T* owned) const {
-    if constexpr (requires { free(&owned); })
-      free(&owned);
-    else
-      free(owned);
-  }
-};
-using Format = std::unique_ptr<AVFormatContext, Freeing<avformat_close_input>>;
-using Codec = std::unique_ptr<AVCodecContext, Freeing<avcodec_free_context>>;
-using Packet = std::unique_ptr<AVPacket, Freeing<av_packet_free>>;
-using Frame = std::unique_ptr<AVFrame, Freeing<av_frame_free>>;
-using Scaler = std::unique_ptr<SwsContext, Freeing<sws_freeContext>>;
 
 /// Frames up to so far ahead are passed over; others are searched for.
 constexpr std::int64_t kNear = 50;
-
-/// The orientation 1..8 that a stream asks for by a matrix of 16.16 numbers.
-int orientation_of(const AVStream& stream) {
-  std::size_t bytes = 0;
-  const auto* data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &bytes);
-  std::int32_t m[9];
-  if (!data || bytes < sizeof m) return 1;
-  std::memcpy(m, data, sizeof m);
-  const bool right = m[0] > 0, down = m[4] > 0, down_by_x = m[1] > 0, right_by_y = m[3] > 0;
-  if (std::abs(m[0]) > std::abs(m[1])) return right ? (down ? 1 : 4) : (down ? 2 : 3);
-  return down_by_x ? (right_by_y ? 5 : 6) : (right_by_y ? 8 : 7);
-}
 
 class AvFilm final : public handcast::renderer::FilmReader {
  public:
@@ -70,7 +40,7 @@ class AvFilm final : public handcast::renderer::FilmReader {
     codec_->pkt_timebase = stream_->time_base;
     codec_->thread_count = 0;  // as many as there are cores
     if (avcodec_open2(codec_.get(), decoder, nullptr) < 0) return false;
-    orientation_ = orientation_of(*stream_);
+    orientation_ = av::orientation_of(*stream_);
     return codec_->width > 0 && codec_->height > 0 && read_times();
   }
 
@@ -167,12 +137,12 @@ class AvFilm final : public handcast::renderer::FilmReader {
     return grey;
   }
 
-  Format format_;
-  Codec codec_;
+  av::Format format_;
+  av::Codec codec_;
   AVStream* stream_ = nullptr;  ///< of format_
-  Packet packet_{av_packet_alloc()};
-  Frame frame_{av_frame_alloc()};
-  Scaler scaler_;
+  av::Packet packet_{av_packet_alloc()};
+  av::Frame frame_{av_frame_alloc()};
+  av::Scaler scaler_;
   int orientation_ = 1;
   std::vector<std::int64_t> stamps_;    ///< of all frames, in the unit of the stream
   std::vector<std::int64_t> times_ns_;  ///< since the first

@@ -179,29 +179,23 @@ Result<Image<Pixel>> decode_as(spng_format format, const PngFile& opened,
   return image;
 }
 
-enum class Alpha { over_black, premultiplied };
+enum class Alpha { over_black, kept };
 
-/// Multiplies the levels of a picture by the alphas of another one.
-void premultiply(Texture& picture, const Texture& alphas) {
-  const auto over_255 = [](std::uint32_t n) { return (n + 128 + ((n + 128) >> 8)) >> 8; };
-  for (std::size_t i = 0; i < picture.pixels().size(); ++i) {
-    const std::uint32_t rgba = picture.pixels()[i], alpha = alphas.pixels()[i] >> 24;
-    const auto level = [&](int shift) { return over_255((rgba >> shift & 255) * alpha) << shift; };
-    picture.pixels()[i] = alpha << 24 | level(16) | level(8) | level(0);
-  }
+/// Gives a picture over black its alpha back.
+Texture with_alpha(Texture over_black, const std::vector<std::uint32_t>& alphas) {
+  for (std::size_t i = 0; i < alphas.size(); ++i)
+    over_black.pixels()[i] = (over_black.pixels()[i] & 0xffffff) | alphas[i] << 24;
+  return over_black;
 }
 
-/// The picture in sRGB, with its alpha.
-Texture premultiplied(Image<WidePixel> picture, const ColourProfile& profile) {
-  Texture alphas(picture.width(), picture.height());
-  for (std::size_t i = 0; i < picture.pixels().size(); ++i) {
-    auto& alpha = picture.pixels()[i][3];
-    alphas.pixels()[i] = (alpha + 128u) / 257 << 24;
-    alpha = 65'535;
-  }
-  Texture converted = srgb_over_black(picture, profile);
-  premultiply(converted, alphas);
-  return converted;
+/// The alphas of a picture, 0..255, if they are wanted.
+template <class Pixel, class AlphaOf>
+std::vector<std::uint32_t> alphas_of(const Image<Pixel>& picture, Alpha wanted,
+                                     const AlphaOf& alpha_of) {
+  std::vector<std::uint32_t> alphas;
+  if (wanted == Alpha::kept)
+    std::ranges::transform(picture.pixels(), std::back_inserter(alphas), alpha_of);
+  return alphas;
 }
 
 Result<Texture> read_png(std::string_view bytes, const std::filesystem::path& file, Alpha alpha) {
@@ -210,12 +204,14 @@ Result<Texture> read_png(std::string_view bytes, const std::filesystem::path& fi
   const int orientation = orientation_of(opened->chunks->exif);
   if (const auto profile = profile_of(*opened, file))
     return decode_as<WidePixel>(SPNG_FMT_RGBA16, *opened, file).map([&](auto&& picture) {
-      return turned(alpha == Alpha::over_black ? srgb_over_black(picture, *profile)
-                                               : premultiplied(std::move(picture), *profile),
-                    orientation);
+      const auto alphas =
+          alphas_of(picture, alpha, [](const WidePixel& pixel) { return (pixel[3] + 128u) / 257; });
+      return turned(with_alpha(srgb_over_black(picture, *profile), alphas), orientation);
     });
   return decode_as<std::uint32_t>(SPNG_FMT_RGBA8, *opened, file).map([&](Texture&& picture) {
-    alpha == Alpha::over_black ? put_over_black(picture) : premultiply(picture, picture);
+    const auto alphas = alphas_of(picture, alpha, [](std::uint32_t pixel) { return pixel >> 24; });
+    put_over_black(picture);
+    picture = with_alpha(std::move(picture), alphas);
     return turned(std::move(picture), orientation);
   });
 }
@@ -302,7 +298,7 @@ Result<Texture> read_picture(const std::filesystem::path& file) {
 }
 
 Result<Texture> read_premultiplied_picture(const std::filesystem::path& file) {
-  return read_picture_as(Alpha::premultiplied, file);
+  return read_picture_as(Alpha::kept, file);
 }
 
 Result<GreyPicture> read_camera_picture(const std::filesystem::path& file, int used_bits) {

@@ -21,8 +21,7 @@ inline constexpr std::uint32_t kLargestSide = 8192;
 /// read is a warning in the log. Errors (bad_config): no such file, not a picture, truncated, a
 /// JPEG in CMYK, larger than 8192 px on a side, a PNG with more than 16 MB of texts and profiles.
 Result<Texture> read_picture(const std::filesystem::path& file);
-/// The same with its alpha, by which the levels of its colours are multiplied, as browsers and
-/// programs that paint do it.
+/// The same with its alpha, by which its light is multiplied: on a hand it looks as read_picture().
 Result<Texture> read_premultiplied_picture(const std::filesystem::path& file);
 
 /// An image of a camera.

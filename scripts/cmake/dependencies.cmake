@@ -12,6 +12,8 @@ pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
 find_package(ZLIB REQUIRED)
 find_package(JPEG REQUIRED)
 pkg_check_modules(ffmpeg REQUIRED IMPORTED_TARGET libavformat libavcodec libavutil libswscale)
+# It is loaded at run time; the header says its version.
+find_path(AVDEVICE_HEADERS libavdevice/version_major.h REQUIRED)
 pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(eigen3 REQUIRED IMPORTED_TARGET eigen3)
 find_package(TinyGLTF REQUIRED)
@@ -84,6 +86,10 @@ handcast_feature(GL "painter gl, which draws on a GPU (libegl-dev libgl-dev)" ${
 pkg_check_modules(cairo QUIET IMPORTED_TARGET cairo)
 handcast_found(found cairo_FOUND)
 handcast_feature(CAIRO "pictures of a running rig, handcast preview (libcairo2-dev)" ${found})
+
+pkg_check_modules(pangocairo QUIET IMPORTED_TARGET pangocairo)
+handcast_found(found pangocairo_FOUND)
+handcast_feature(PANGO "text as content (libpango1.0-dev)" ${found})
 
 find_package(glfw3 QUIET)
 find_package(OpenGL QUIET COMPONENTS OpenGL)

@@ -8,6 +8,7 @@ set(share ${HANDCAST_INSTALL_SHAREDIR})
 install(DIRECTORY config/rigs config/calibrations config/sweeps DESTINATION ${share})
 install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts)
 install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
+install(FILES scripts/handcast_content.py DESTINATION ${share}/python)
 
 # The documents, in the folders that their links lead to.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE
@@ -17,7 +18,7 @@ install(DIRECTORY config/rigs DESTINATION ${CMAKE_INSTALL_DOCDIR}/config)
 foreach(file
     config/REFERENCE.md config/assets/leap/bring_up.txt config/assets/preview.png config/assets/readme.png config/assets/template.png ipc/ring/README.md
     renderer/README.md scripts/read_recording.py services/lab/training/MODEL_CARD.md
-    tests/client/CMakeLists.txt tests/client/read_projections.cpp)
+    tests/client/CMakeLists.txt tests/client/draw_ring.c tests/client/draw_waves.py tests/client/read_projections.cpp)
   cmake_path(GET file PARENT_PATH folder)
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
 endforeach()
@@ -41,6 +42,11 @@ foreach(module ipc/base ipc/msg ipc/shm ipc/ring ipc/client)
     FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE)
 endforeach()
 
+# The library for programs that draw, in any language.
+install(TARGETS handcast_c EXPORT handcastTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES ipc/client/handcast.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
 # find_package(handcast)
 set(made ${CMAKE_BINARY_DIR}/package)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/handcast)
@@ -52,9 +58,11 @@ write_basic_package_version_file(${made}/handcastConfigVersion.cmake
 install(FILES ${made}/handcastConfig.cmake ${made}/handcastConfigVersion.cmake
   DESTINATION ${package})
 
-# pkg-config handcast
+# pkg-config handcast, handcast-c
 set(pkgconfig ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH prefix_from_pc /${pkgconfig} /)
 string(REGEX REPLACE "/$" "" prefix_from_pc ${prefix_from_pc})
-configure_file(scripts/cmake/handcast.pc.in ${made}/handcast.pc @ONLY)
-install(FILES ${made}/handcast.pc DESTINATION ${pkgconfig})
+foreach(name handcast handcast-c)
+  configure_file(scripts/cmake/${name}.pc.in ${made}/${name}.pc @ONLY)
+  install(FILES ${made}/${name}.pc DESTINATION ${pkgconfig})
+endforeach()

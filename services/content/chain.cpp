@@ -32,6 +32,13 @@ std::string name_of(const config::ContentElement& element) {
   return element.kind + ":" + element.what;
 }
 
+/// The error with the name of its element, unless its sentence has it.
+Error named(const config::ContentElement& element, Error error) {
+  if (element.what.empty() || error.what.find(element.what) == std::string::npos)
+    error.what = config::print_content({element}) + ": " + error.what;
+  return error;
+}
+
 /// "2.speed" as 2 and "speed"; 0 without a number.
 std::pair<std::size_t, std::string_view> split_number(std::string_view name) {
   std::size_t number = 0;
@@ -60,8 +67,10 @@ Result<void> Chain::add(const config::ContentElement& written) {
   element.opening.element = written;
   std::erase_if(element.opening.element.parameters,
                 [](const auto& parameter) { return is_of_chain(parameter.first); });
+  config::ContentElement plain = written;
+  plain.parameters.clear();
   auto source = open_source_(element.opening);
-  if (!source) return fail_in(name_of(written), source.error());
+  if (!source) return tl::make_unexpected(named(plain, source.error()));
   element.source = std::move(*source);
   if (element.source->inputs() > 1)
     return fail(Errc::bad_config,
@@ -71,7 +80,7 @@ Result<void> Chain::add(const config::ContentElement& written) {
   for (const auto& [name, value] : written.parameters)
     if (is_of_chain(name))
       if (auto set = set_in(element, name, value); !set)
-        return fail_in(name_of(written), set.error());
+        return tl::make_unexpected(named(plain, set.error()));
   element.result = renderer::Texture(like_.width, like_.height);
   if (elements_.size() == 1) nothing_ = element.result;
   return {};
@@ -160,8 +169,9 @@ void Chain::note_fault(Element& element, Error error, double time_s) {
   element.retry_s = time_s + kRetry_s;
   if (element.told == error.what) return;
   element.told = error.what;
-  error.what = name_of(element.opening.element) + ": " + error.what;
-  to_tell_ = std::move(error);
+  auto plain = element.opening.element;
+  plain.parameters.clear();
+  to_tell_ = named(plain, std::move(error));
 }
 
 std::vector<Parameter> Chain::parameters_of(const Element& element) {

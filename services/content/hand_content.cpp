@@ -69,15 +69,20 @@ void HandContent::note_fault(const Error& error) {
   log::warning("{}: {}", name_of(like_.side), printable(error.what));
 }
 
-void HandContent::draw(const HandState& hand, const HandState& other, std::int64_t time_ns) {
+bool HandContent::draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
+                       const CameraView* camera) {
   const std::int64_t begin_ns = now_ns();
-  const auto drawn = mixer_.draw(hand, other, ns_to_seconds(time_ns));
+  const auto drawn = mixer_.draw(hand, other, ns_to_seconds(time_ns), camera);
   if (!drawn) note_fault(drawn.error());
-  if (drawn.value_or(false) || state_.pictures == 0 || is_new_) publish(time_ns);
-  is_new_ = false;
+  const bool is_first = std::exchange(is_new_, false) || state_.pictures == 0;
+  if (!drawn.value_or(false) && !is_first) return false;
+  publish(time_ns);
   constexpr float kShare = 0.05f;  // of the newest in the mean
   const auto took_ms = static_cast<float>(ns_to_ms(now_ns() - begin_ns));
-  state_.draw_ms += (state_.draw_ms == 0 ? 1 : kShare) * (took_ms - state_.draw_ms);
+  // The first picture makes what the others use.
+  if (!is_first) state_.draw_ms += (state_.draw_ms == 0 ? 1 : kShare) * (took_ms - state_.draw_ms);
+  if (is_first) state_.draw_ms = 0;
+  return true;
 }
 
 void HandContent::publish(std::int64_t time_ns) {

@@ -9,8 +9,7 @@ namespace handcast::content {
 std::filesystem::path looks_folder() {
   if (const char* assets = std::getenv("HANDCAST_ASSETS"); assets && *assets != '\0')
     return std::filesystem::path(assets) / "looks";
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() /
-         "../share/handcast/looks";
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../share/handcast/looks";
 }
 
 std::vector<std::string> look_names() {

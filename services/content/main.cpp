@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/guest_picture.hpp"
 #include "services/content/hand_content.hpp"
 #include "services/content/hands.hpp"
 #include "services/runtime/context.hpp"
@@ -20,9 +28,28 @@ struct Contents {
   std::vector<content::HandContent> worn;  ///< left, right
   ipc::Reader<msg::HandPoses> poses;
   ipc::Reader<msg::ContentCommand> commands;
+  ipc::Reader<msg::CameraFrame> images;
+  std::optional<ipc::Sample<msg::CameraFrame>> image{};  ///< the newest, while a content needs it
   ipc::Writer<msg::ContentState> states;
   std::uint64_t published = 0;
 };
+
+/// The rings of other people's programs, by their streams.
+using Guests = std::map<std::string, ipc::Segment, std::less<>>;
+
+static Guests take_guests(service::Context& context) {
+  Guests guests;
+  for (const auto stream : msg::kGuestPictures) guests.emplace(stream, must(context.ring(stream)));
+  return guests;
+}
+
+/// Another mapping of a guest's ring.
+static Result<ipc::Segment> open_again(const Guests& guests, std::string_view stream) {
+  const auto found = guests.find(stream);
+  if (found == guests.end())
+    return fail(Errc::bad_config, fmt::format("there is no ring {}", stream));
+  return ipc::Segment::open(UniqueFd(::dup(found->second.fd())));
+}
 
 static content::Opening opening_of(const config::Rig& rig, msg::Side side,
                                    const content::Hands& hands) {
@@ -65,15 +92,46 @@ static void publish_state(Contents& all) {
   all.states.publish(std::move(state));
 }
 
-/// Draws what is due for both hands. A hand that is not there needs no new pictures.
-static void draw(Contents& all, std::int64_t time_ns) {
-  const bool needs_surface = std::ranges::any_of(
-      all.worn, [](const auto& worn) { return worn.needs().surface || worn.needs().camera; });
-  all.hands.needs_surface(needs_surface);
+/// The newest image, as it shows the hands; empty if no content needs it.
+static std::optional<content::CameraView> view_of(service::Context& context, Contents& all,
+                                                  bool is_needed) {
+  if (!is_needed) {
+    all.image.reset();
+    return std::nullopt;
+  }
+  if (auto newest = all.images.latest(Deadline::now()))
+    all.image = std::move(*newest);
+  else if (newest.error().code != Errc::timeout)
+    context.tolerate(newest.error());
+  if (!all.image) return std::nullopt;
+  const msg::CameraFrame& frame = **all.image;
+  const auto width = static_cast<int>(frame.width_px);
+  return content::CameraView{{{frame.pixels(), width, static_cast<int>(frame.height_px), width},
+                              frame.header.origin_ns,
+                              frame.header.frame_id},
+                             &context.calibration().camera};
+}
+
+/// Draws what is due for both hands. A hand that is not there needs no new pictures. Returns
+/// whether a picture was new.
+static bool draw(service::Context& context, Contents& all, std::int64_t time_ns) {
+  content::Needs needs;
+  for (const auto& worn : all.worn) needs |= worn.needs();
+  all.hands.needs_surface(needs.surface || needs.camera);
   const auto hands = all.hands.at(time_ns);
-  for (std::size_t i = 0; i < all.worn.size(); ++i)
-    if (hands[i].is_there || all.worn[i].is_due())
-      all.worn[i].draw(hands[i], hands[1 - i], time_ns);
+  auto view = view_of(context, all, needs.camera);
+  content::BothHands seen;
+  if (view) seen = all.hands.seen_at(view->image.origin_ns);
+  bool is_new = false;
+  for (std::size_t i = 0; i < all.worn.size(); ++i) {
+    if (!hands[i].is_there && !all.worn[i].is_due()) continue;
+    if (view) {
+      view->hand = &seen[i];
+      view->other = &seen[1 - i];
+    }
+    is_new |= all.worn[i].draw(hands[i], hands[1 - i], time_ns, view ? &*view : nullptr);
+  }
+  return is_new;
 }
 
 /// Draws the contents of the hands content.rate_hz times a second, until the service ends.
@@ -81,20 +139,26 @@ static void run_content(service::Context& context) {
   const auto& rig = context.rig();
   auto hands = must(content::Hands::load(rig, context.calibration()));
   context.stand_by();
-  Contents all{.hands = std::move(hands),
-               .worn = {},
-               .poses = must(context.reader<msg::HandPoses>("pose.hands")),
-               .commands = must(context.reader<msg::ContentCommand>(msg::kContentCommands)),
-               .states = must(context.writer<msg::ContentState>("content.state"))};
+  const auto guests = take_guests(context);
+  Contents all{
+      .hands = std::move(hands),
+      .worn = {},
+      .poses = must(context.reader<msg::HandPoses>("pose.hands")),
+      .commands = must(context.reader<msg::ContentCommand>(msg::kContentCommands)),
+      .images = must(ipc::Reader<msg::CameraFrame>::watch(must(context.ring("camera.frames")))),
+      .states = must(context.writer<msg::ContentState>("content.state"))};
   for (const auto side : {msg::Side::left, msg::Side::right}) {
     const auto* const stream = side == msg::Side::left ? "content.left" : "content.right";
-    all.worn.emplace_back(opening_of(rig, side, all.hands), rig.content,
+    auto like = opening_of(rig, side, all.hands);
+    like.ring = [&guests](std::string_view guest) { return open_again(guests, guest); };
+    all.worn.emplace_back(std::move(like), rig.content,
                           must(context.writer<msg::ContentPicture>(stream)));
     all.worn.back().start();
   }
   context.ready();
   const auto period_ns = seconds_to_ns(1 / rig.content.rate_hz);
   std::int64_t due_ns = now_ns(), state_ns = due_ns;
+  std::uint64_t pictures = 0;
   while (context.running()) {
     // A command is obeyed at once.
     const bool is_changed =
@@ -102,9 +166,9 @@ static void run_content(service::Context& context) {
     const std::int64_t begin_ns = now_ns();
     if (begin_ns < due_ns && !is_changed) continue;
     take_poses(context, all);
-    draw(all, begin_ns + period_ns);
-    context.mark({all.published, begin_ns},
-                 std::array{msg::StageMark{msg::Stage::draw, 0, begin_ns, now_ns()}});
+    if (draw(context, all, begin_ns + period_ns))
+      context.mark({++pictures, begin_ns},
+                   std::array{msg::StageMark{msg::Stage::draw, 0, begin_ns, now_ns()}});
     due_ns = std::max(due_ns + period_ns, now_ns());
     if (begin_ns < state_ns && !is_changed) continue;
     publish_state(all);
@@ -132,7 +196,8 @@ int main(int argc, char** argv) {
                        .summary = "Draws what is on the hands: pictures, films, shaders.",
                        .paced_by = "content.rate_hz",
                        .publishes = {"content.left", "content.right", "content.state"},
-                       .subscribes = {"pose.hands", std::string(msg::kContentCommands)},
+                       .subscribes = {"pose.hands", "camera.frames", "guest.left", "guest.right",
+                                      std::string(msg::kContentCommands)},
                        .settings = {"content", "hand", "cascade.predict", "cascade.skin"}},
                       argc, argv, run_content, check_content);
 }

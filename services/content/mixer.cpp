@@ -64,8 +64,10 @@ Result<void> Mixer::change(Chain next, std::string_view transition, double secon
   return {};
 }
 
-Result<bool> Mixer::draw(const HandState& hand, const HandState& other, double time_s) {
+Result<bool> Mixer::draw(const HandState& hand, const HandState& other, double time_s,
+                         const CameraView* camera) {
   Moment moment;
+  moment.camera = camera;
   moment.hand = &hand;
   moment.other = &other;
   set_date(moment);

@@ -21,11 +21,13 @@ class Mixer {
   /// bad_config (it is none); then nothing changes.
   Result<void> change(Chain next, std::string_view transition, double seconds);
 
-  /// Draws the picture of a time, in seconds of any clock that goes on evenly. Returns false if
+  /// Draws the picture of a time, in seconds of any clock that goes on evenly. `camera`: see
+  /// Moment. Returns false if
   /// picture() is the same as before. Errors, for a person: those of the chains; the picture goes
   /// on and may have changed. A new chain that fails during its transition is dropped, and the old
   /// one stays, unless the error is bad_data or a timeout.
-  Result<bool> draw(const HandState& hand, const HandState& other, double time_s);
+  Result<bool> draw(const HandState& hand, const HandState& other, double time_s,
+                    const CameraView* camera = nullptr);
 
   /// What is shown.
   const renderer::Texture& picture() const;

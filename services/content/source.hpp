@@ -57,8 +57,11 @@ struct HandState {
 struct CameraView {
   renderer::TimedImage image;
   const calib::CameraModel* lens = nullptr;  ///< never null
-  const HandState* hand =
-      nullptr;  ///< that wears the content, when the image was taken; never null
+  /// As they were when the image was taken; never null.
+  /// @{
+  const HandState* hand = nullptr;   ///< that wears the content
+  const HandState* other = nullptr;  ///< the person's other hand
+  /// @}
 };
 
 /// What a source draws for.
@@ -78,7 +81,7 @@ struct Moment {
 /// What a source uses of a moment that costs time to provide.
 struct Needs {
   bool surface = false;  ///< HandState::positions_m and normals, of all hands
-  bool camera = false;   ///< Moment::camera, with the surface of its hand
+  bool camera = false;   ///< Moment::camera, with the surfaces of its hands
 
   Needs& operator|=(const Needs& other) {
     surface |= other.surface;

@@ -19,8 +19,8 @@ class Contents {
   Contents(ipc::Reader<msg::ContentPicture> left, ipc::Reader<msg::ContentPicture> right)
       : readers_{std::move(left), std::move(right)} {}
 
-  /// Passes each picture that is new to pipeline.wear() (renderer::Pipeline, or a type with the same
-  /// wear()), for as long as it is the newest. Does not wait. Errors: bad_data (a picture is
+  /// Passes each picture that is new to pipeline.wear() (renderer::Pipeline, or a type with the
+  /// same wear()), for as long as it is the newest. Does not wait. Errors: bad_data (a picture is
   /// unusable; the one before stays), unavailable.
   template <class Pipeline>
   Result<void> deliver(Pipeline& pipeline) {

@@ -29,13 +29,14 @@ class Inputs {
 
   /// Takes the newest image, and passes all poses and detections since the last call to
   /// pipeline.push(), and new content to pipeline.wear() (renderer::Pipeline, or a type with the
-  /// same functions). Waits only for a new image, until the deadline. It is no error if nothing arrived. Errors: those of ipc::Reader,
-  /// except timeout; bad_data (something of another calibration arrived, and was left out).
+  /// same functions). Waits only for a new image, until the deadline. It is no error if nothing
+  /// arrived. Errors: those of ipc::Reader, except timeout; bad_data (something of another
+  /// calibration arrived, and was left out).
   template <class Pipeline>
   Result<void> deliver(Pipeline& pipeline, Deadline image_deadline) {
     auto taken = take_image(image_deadline);
-    for (const auto& pushed : {push_all(poses_, pipeline), push_all(landmarks_, pipeline),
-                               contents_.deliver(pipeline)})
+    for (const auto& pushed :
+         {push_all(poses_, pipeline), push_all(landmarks_, pipeline), contents_.deliver(pipeline)})
       if (!pushed && taken) taken = pushed;
     return taken;
   }

@@ -59,13 +59,14 @@ static Result<void> check_projector(const config::Rig& rig, const calib::Calibra
 }
 
 int main(int argc, char** argv) {
-  return service::run({.name = "projector",
-                       .summary = "Projects light onto the hands that the sensors see.",
-                       .paced_by = "projector.rate_hz",
-                       .publishes = {"projection.frames"},
-                       .subscribes = {"camera.frames", "pose.hands", "landmarks.hands", "content.left",
-                                      "content.right", std::string(msg::kTestPictures)},
-                       .settings = {"projector", "content.shading", "content.smooth", "hand", "cascade"},
-                       .backends = service::describe_rows(projector::projector_backends())},
-                      argc, argv, run_projector, check_projector);
+  return service::run(
+      {.name = "projector",
+       .summary = "Projects light onto the hands that the sensors see.",
+       .paced_by = "projector.rate_hz",
+       .publishes = {"projection.frames"},
+       .subscribes = {"camera.frames", "pose.hands", "landmarks.hands", "content.left",
+                      "content.right", std::string(msg::kTestPictures)},
+       .settings = {"projector", "content.shading", "content.smooth", "hand", "cascade"},
+       .backends = service::describe_rows(projector::projector_backends())},
+      argc, argv, run_projector, check_projector);
 }

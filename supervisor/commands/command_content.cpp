@@ -139,8 +139,8 @@ int try_sources(Arguments arguments) {
   for (const auto& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
   pointers.push_back(nullptr);
   execv(program.c_str(), pointers.data());
-  return complain(kExitConfig, fmt::format("the program {} is missing; `scripts/build` builds all",
-                                           program));
+  return complain(kExitConfig,
+                  fmt::format("the program {} is missing; `scripts/build` builds all", program));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
 #include "ipc/msg/content_command.hpp"
+#include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
@@ -161,9 +162,13 @@ void give_status(LiveRig& rig, const Reply& reply) {
   reply(answer);
 }
 
-/// Only rings that no service writes to may be changed by a tool; the others not even by accident.
+/// Only the rings that no service writes to may be changed by a tool; the others not even by
+/// accident.
 int access_to(std::string_view stream) {
-  return stream == msg::kTestPictures || stream == msg::kContentCommands ? O_RDWR : O_RDONLY;
+  const bool is_for_guests =
+      std::ranges::find(msg::kGuestPictures, stream) != msg::kGuestPictures.end();
+  const bool is_for_tools = stream == msg::kTestPictures || stream == msg::kContentCommands;
+  return is_for_guests || is_for_tools ? O_RDWR : O_RDONLY;
 }
 
 void give_rings(const LiveRig& rig, const Reply& reply) {

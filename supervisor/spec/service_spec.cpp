@@ -5,6 +5,7 @@
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/content_command.hpp"
 #include "ipc/msg/content_picture.hpp"
+#include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/largest_images.hpp"
@@ -23,7 +24,16 @@ constexpr int kImageSlots = 8;
 /// One reader with two leases, and two for the writer.
 constexpr int kPictureSlots = 4;
 
+/// The newest, the one that is written, and one to write meanwhile: its reader takes no lease.
+constexpr int kGuestSlots = 3;
+
 constexpr bool kNewestOnly = false, kWithHistory = true;
+
+ipc::RingSpec guest_ring(const char* stream) {
+  constexpr auto kLargest_px = msg::GuestPicture::kLargest_px;
+  return ipc::RingSpec::of<msg::GuestPicture>(stream, kGuestSlots, kNewestOnly,
+                                              msg::GuestPicture::bytes(kLargest_px, kLargest_px));
+}
 
 std::vector<ipc::RingSpec> all_streams() {
   using ipc::RingSpec;
@@ -43,6 +53,8 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::TestPicture>(std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
                                      msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px,
                                                              msg::kLargestTestPictureHeight_px)),
+      guest_ring("guest.left"),
+      guest_ring("guest.right"),
   };
 }
 

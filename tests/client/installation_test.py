@@ -4,8 +4,8 @@
 
 usage: installation_test.py BUILD_FOLDER
 
-Installs, moves the tree, builds read_projections.cpp with CMake and with pkg-config, and runs it
-against a rig that was started from the moved tree.
+Installs, moves the tree, builds the examples with CMake and with pkg-config, and runs them, and the
+one in Python, against a rig that was started from the moved tree.
 """
 import json
 import os
@@ -143,6 +143,12 @@ class TheInstalledTree(unittest.TestCase):
         else:
             self.assertIn(f"\nUser={pwd.getpwuid(os.getuid()).pw_name}\n", done.stdout)
 
+    def test_has_a_library_that_exports_its_own_functions_alone(self):
+        said = run("nm", "-D", "--defined-only", "--format=posix", tree / "lib/libhandcast.so.0")
+        names = {line.split()[0].split("@")[0] for line in said.splitlines()} - {"HANDCAST_0"}
+        header = (tree / "include/handcast.h").read_text(encoding="utf-8")
+        self.assertEqual(names, set(re.findall(r"(handcast_\w+)\(", header)))
+
     def test_has_every_header_that_its_headers_include(self):
         folder = tree / "include/handcast"
         headers = sorted(str(file.relative_to(folder)) for file in folder.rglob("*.hpp"))
@@ -152,8 +158,8 @@ class TheInstalledTree(unittest.TestCase):
         run("g++", "-std=c++20", "-Wall", "-Werror", "-fsyntax-only", *flags("--cflags"), every)
 
 
-def flags(*options):
-    said = run("pkg-config", *options, "handcast", PKG_CONFIG_PATH=str(tree / "lib/pkgconfig"))
+def flags(*options, package="handcast"):
+    said = run("pkg-config", *options, package, PKG_CONFIG_PATH=str(tree / "lib/pkgconfig"))
     return shlex.split(said)
 
 
@@ -164,11 +170,16 @@ class AProgramOfSomebodyElse(unittest.TestCase):
     def setUpClass(cls):
         cls.by_cmake = scratch / "example/read_projections"
         folder = cls.by_cmake.parent
-        run("cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, f"-DCMAKE_PREFIX_PATH={tree}")
+        # gcc splits a run path at its spaces.
+        run("cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, f"-DCMAKE_PREFIX_PATH={tree}", "-DCMAKE_SKIP_RPATH=ON")
         run("cmake", "--build", folder)
         cls.by_pkg_config = scratch / "read_projections"
         run("g++", "-std=c++20", SOURCE / "read_projections.cpp", "-o", cls.by_pkg_config,
             *flags("--cflags", "--libs"))
+        cls.ring_by_cmake = folder / "draw_ring"
+        cls.ring_by_pkg_config = scratch / "draw_ring"
+        run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", SOURCE / "draw_ring.c", "-o", cls.ring_by_pkg_config,
+            *flags("--cflags", "--libs", package="handcast-c"), "-lm")
 
     def setUp(self):
         self.processes = []
@@ -181,8 +192,8 @@ class AProgramOfSomebodyElse(unittest.TestCase):
                 process.wait(PATIENCE_S)
             process.stdout.close()
 
-    def start(self, *command):
-        process = subprocess.Popen([str(word) for word in command], cwd=scratch, env=environment(),
+    def start(self, *command, **env):
+        process = subprocess.Popen([str(word) for word in command], cwd=scratch, env=environment(**env),
                                    text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                    start_new_session=True)
         self.processes.append(process)
@@ -212,6 +223,36 @@ class AProgramOfSomebodyElse(unittest.TestCase):
         said = self.start(self.by_cmake)
         self.assertIn("no rig is up; `handcast up RIG.toml` starts one", said.stdout.read())
         self.assertEqual(said.wait(PATIENCE_S), 1)
+
+    def start_drawing(self, program, *arguments):
+        return self.start(*program, *arguments, LD_LIBRARY_PATH=str(tree / "lib"),
+                          PYTHONPATH=str(tree / "share/handcast/python"))
+
+    def test_that_draws_without_a_rig_is_told_how_to_start_one(self):
+        for program in ([self.ring_by_pkg_config], [sys.executable, SOURCE / "draw_waves.py"]):
+            said = self.start_drawing(program, "1")
+            self.assertIn("no rig is up; `handcast up RIG.toml` starts one", said.stdout.read())
+            self.assertEqual(said.wait(PATIENCE_S), 1)
+
+    def test_draws_on_the_hands_in_c_and_in_python(self):
+        self.start_rig()
+        ring = self.start_drawing([self.ring_by_cmake], "30")
+        waves = self.start_drawing([sys.executable, SOURCE / "draw_waves.py"], "30")
+        seen = ring.stdout.read().splitlines()
+        self.assertEqual(seen[-1].split(":")[0], "picture 29")
+        self.assertIn("left 1", "".join(seen))
+        self.assertEqual(waves.stdout.read().splitlines()[-1].split(":")[0], "picture 29")
+        self.assertEqual([ring.wait(PATIENCE_S), waves.wait(PATIENCE_S)], [0, 0])
+        rings = {row["stream"]: row for row in json.loads(handcast("top", "--once", "--json"))["rings"]}
+        self.assertEqual([rings[name]["published"] for name in ("guest.left", "guest.right")], [30, 30])
+        again = self.start_drawing([self.ring_by_pkg_config], "1000000")
+        while "picture" not in again.stdout.readline():
+            continue
+        other = self.start_drawing([self.ring_by_cmake], "1")
+        self.assertIn("another writer", other.stdout.read())
+        handcast("down")
+        self.assertIn("no longer up", again.stdout.read())
+        self.assertEqual(again.wait(PATIENCE_S), 1)
 
     def test_reads_frames_until_the_rig_is_down(self):
         began_ms = moment_ms()

@@ -40,7 +40,8 @@ class Scene {
   }
 
   void paint(Painter& painter) const {
-    const DrawnHand drawn{&mesh_, texture_.view(), position_px_, depth_m_, {}, revision_, revision_};
+    const DrawnHand drawn{&mesh_, texture_.view(), position_px_, depth_m_,
+                          {},     revision_,       revision_};
     painter.draw({&drawn, 1}, region_);
     painter.fill(mask_.view(), {}, region_);
     painter.colour();

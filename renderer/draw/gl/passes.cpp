@@ -58,8 +58,8 @@ std::unique_ptr<PictureCopy> AssetCache::spare(const msg::MipLayout& layout) {
     return one->used + 2 < draws_ && is_same(one->layout, layout);
   });
   if (old == pictures_.end())
-    return std::make_unique<PictureCopy>(PictureCopy{
-        make_image(context_, GL_R32UI, layout.stride(), layout.rows()), layout});
+    return std::make_unique<PictureCopy>(
+        PictureCopy{make_image(context_, GL_R32UI, layout.stride(), layout.rows()), layout});
   auto reused = std::move(*old);
   pictures_.erase(old);
   return reused;

@@ -148,8 +148,8 @@ class Filler {
   /// Copies `region` of the mask to the GPU. Returns false if the context is lost.
   bool upload(View<const std::uint8_t> mask, const Rect& region);
   /// Fills `region` of `frame` by the mask uploaded last. `contents`: one per hand.
-  void fill(const config::Fill& settings, const Rect& region,
-            std::span<const HandAssets> contents, const Layers& frame);
+  void fill(const config::Fill& settings, const Rect& region, std::span<const HandAssets> contents,
+            const Layers& frame);
   /// The counts of the last fill(), valid after the commands up to now are finished (wait()).
   FillCounts counts() const;
 

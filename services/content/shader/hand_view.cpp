@@ -113,7 +113,8 @@ void HandView::find_texels() {
   renderer::cpu::NearestPixel nearest;
   for (const auto& way : nearest.find(on.view(), off.view(), kReach))
     beside_.push_back({static_cast<std::uint32_t>(way.y * width_ + way.x),
-                       static_cast<std::uint32_t>((way.y + way.dy) * width_ + way.x + way.dx)});
+                       static_cast<std::uint32_t>((way.y + way.dy) * width_ + way.x + way.dx),
+                       std::sqrt(static_cast<float>(way.squared_px))});
   edge_px_.assign(on.pixels().size(), static_cast<float>(kReach));
   for (const auto& way : nearest.find(off.view(), on.view(), kReach))
     edge_px_[static_cast<std::size_t>(way.y * width_ + way.x)] =
@@ -200,9 +201,10 @@ void HandView::draw_map(std::size_t index, const HandState& hand) {
     if (kind == kPosition) out = glm::vec4(texel.of(hand.positions_m), facing(texel));
     if (kind == kNormal) out = glm::vec4(glm::normalize(texel.of(hand.normals)), facing(texel));
   }
-  for (const auto& [to, from] : beside_) {
-    place(to) = place(from);
-    if (kind == kBone) place(to).y = 0;
+  for (const auto& beside : beside_) {
+    glm::vec4& out = place(beside.to);
+    out = place(beside.from);
+    if (kind == kBone) out.y = -beside.distance_px;
   }
 }
 

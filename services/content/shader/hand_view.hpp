@@ -31,8 +31,8 @@ namespace handcast::content::shader {
 ///                                    at +x, that of a right one at -x); w: 1 on the back, -1 on
 ///                                    the palm, 0 far from the charts
 ///     sampler2D hand_bone            x: the joint with the largest weight; y: texels to the
-///                                    outline of the chart, at most 32; z: 0..1 along the bone
-///                                    that begins there
+///                                    outline of the chart, at most 32, negative beyond it; z: 0..1
+///                                    along the bone that begins there; w: 1, far from the charts 0
 ///     sampler2D hand_position        xyz: camera space, m; w as above
 ///     sampler2D hand_surface_normal  unit length, camera space
 class HandView {
@@ -66,6 +66,7 @@ class HandView {
   /// A texel off the charts, and the nearest one on them.
   struct Beside {
     std::uint32_t to, from;
+    float distance_px;
   };
   bool mentions(std::string_view prefix, std::string_view name) const;
   void find_texels();

@@ -186,6 +186,7 @@ Result<IsfPass> read_pass(const Json& element, const IsfHead& head) {
   pass.height = std::move(*height);
   pass.is_persistent = is_true(at(element, "PERSISTENT"));
   pass.is_float = is_true(at(element, "FLOAT"));
+  pass.is_drawn_once = !pass.target.empty() && is_true(at(element, "ONCE"));
   return pass;
 }
 

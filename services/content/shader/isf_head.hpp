@@ -29,6 +29,9 @@ struct IsfPass {
   std::string target;                       ///< the image that it draws; "": the output
   std::optional<Expression> width, height;  ///< px; empty: those of the output
   bool is_persistent = false, is_float = false;
+  /// "ONCE", an extension of handcast: it depends on nothing but the settings and the hand at rest,
+  /// and is drawn only when those change.
+  bool is_drawn_once = false;
 };
 
 /// An image that comes with an ISF file.

@@ -18,7 +18,7 @@ constexpr std::string_view kBuiltIns = R"(
 uniform vec2 RENDERSIZE;
 uniform float TIME, TIMEDELTA;
 uniform vec4 DATE;
-uniform int FRAMEINDEX, PASSINDEX;
+uniform int FRAMEINDEX;
 vec4 hc_at(sampler2D image, vec2 place) { return texture(image, place); }
 vec4 hc_at(sampler2D image, vec2 place, float bias) { return texture(image, place); }
 vec2 hc_size(sampler2D image) { return vec2(textureSize(image, 0)); }
@@ -92,7 +92,7 @@ std::string declarations_of(const IsfHead& head, const std::vector<std::string>&
     const auto name = name_in_glsl(image);
     text += fmt::format(
         "uniform sampler2D {0};\n#define _{1}_imgSize hc_size({0})\n"
-        "#define _{1}_imgRect vec4(0.0, 0.0, 1.0, 1.0)\n#define _{1}_flip false\n",
+        "#define _{1}_imgRect vec4(vec2(0.0), hc_size({0}))\n#define _{1}_flip false\n",
         name, image);
   }
   return text;
@@ -160,16 +160,19 @@ Result<IsfProgram> IsfProgram::make(Graphics& graphics, const fs::path& file,
 
   const auto common =
       std::string(kBuiltIns) + declarations_of(made.head, made.images) + made.hands->declarations();
-  fragment.prelude = std::string(kFragmentPrelude) + common;
   fragment.epilogue = fragment_epilogue(fragment.glsl.output);
-  vertex.prelude = std::string(kVertexPrelude) + common;
   vertex.epilogue = kVertexEpilogue;
   std::vector<std::string> samplers;
   for (const auto& image : made.images) samplers.push_back(name_in_glsl(image));
   std::ranges::copy(made.hands->samplers(), std::back_inserter(samplers));
-  auto program = UserProgram::make(graphics, fragment, vertex, samplers);
-  if (!program) return tl::make_unexpected(program.error());
-  made.program = std::move(*program);
+  for (std::size_t pass = 0; pass < made.head.passes.size(); ++pass) {
+    const auto prelude = fmt::format("const int PASSINDEX = {};\n{}", pass, common);
+    fragment.prelude = std::string(kFragmentPrelude) + prelude;
+    vertex.prelude = std::string(kVertexPrelude) + prelude;
+    auto program = UserProgram::make(graphics, fragment, vertex, samplers);
+    if (!program) return tl::make_unexpected(program.error());
+    made.programs.push_back(std::move(*program));
+  }
   return made;
 }
 

@@ -15,9 +15,9 @@ struct IsfProgram {
   std::vector<std::filesystem::path> files;  ///< that it consists of, or might
   IsfHead head;
   std::unique_ptr<HandView> hands;
-  UserProgram program;
-  std::vector<std::string> images;  ///< the names of its images, in the order of their units
-  bool is_still = false;            ///< its picture depends on its parameters and images only
+  std::vector<UserProgram> programs;  ///< one a pass: PASSINDEX is a constant in each
+  std::vector<std::string> images;    ///< the names of its images, in the order of their units
+  bool is_still = false;              ///< its picture depends on its parameters and images only
 
   /// Reads FILE.fs and FILE.vs, if there is one. Errors (bad_config): no such file, those of
   /// parse_isf_head(), a compile error with its line.

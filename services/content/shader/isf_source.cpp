@@ -85,9 +85,9 @@ class IsfSource final : public SettableSource {
     if (auto usable = graphics_->use(); !usable) return tl::make_unexpected(usable.error());
     upload(inputs);
     isf_.hands->update(*graphics_, moment);
-    set_inputs(moment);
     const Target* last = &output_;
-    for (std::size_t i = 0; i < isf_.head.passes.size(); ++i) last = draw_pass(i);
+    for (std::size_t i = 0; i < isf_.head.passes.size(); ++i)
+      last = draw_pass(i, moment, is_changed || !has_drawn_);
     read(*last, out);
     events_.clear();
     has_drawn_ = true;
@@ -110,8 +110,7 @@ class IsfSource final : public SettableSource {
     graphics_->upload(images_[std::string(kEnd)], inputs[1], true);
   }
 
-  void set_inputs(const Moment& moment) {
-    const auto& program = isf_.program;
+  void set_inputs(const UserProgram& program, const Moment& moment) {
     program.set("TIME", static_cast<float>(moment.time_s));
     program.set("TIMEDELTA", static_cast<float>(moment.step_s));
     program.set("FRAMEINDEX", static_cast<int>(moment.frame & 0x7fffffff));
@@ -120,11 +119,10 @@ class IsfSource final : public SettableSource {
                                   static_cast<float>(moment.day_s)));
     isf_.hands->set(program, moment);
     for (const auto& input : isf_.head.inputs)
-      if (!input.is_image()) set_input(input, moment);
+      if (!input.is_image()) set_input(program, input, moment);
   }
 
-  void set_input(const IsfInput& input, const Moment& moment) {
-    const auto& program = isf_.program;
+  void set_input(const UserProgram& program, const IsfInput& input, const Moment& moment) {
     const auto name = name_in_glsl(input.name());
     if (is_given(isf_.head, input.name())) {
       program.set(name, static_cast<float>(moment.progress));
@@ -177,14 +175,16 @@ class IsfSource final : public SettableSource {
     return buffer.next;
   }
 
-  /// Draws a pass. Returns its picture.
-  const Target* draw_pass(std::size_t index) {
+  /// Draws a pass, one that is drawn once only if that `is_due`. Returns its picture.
+  const Target* draw_pass(std::size_t index, const Moment& moment, bool is_due) {
     const IsfPass& pass = isf_.head.passes[index];
+    if (pass.is_drawn_once && !is_due) return &buffers_[pass.target].last;
     Target& target = target_of(pass);
     bind_images();
-    isf_.program.set("PASSINDEX", static_cast<int>(index));
-    isf_.program.set("RENDERSIZE", glm::vec2(target.texels.width, target.texels.height));
-    graphics_->functions().UseProgram(isf_.program.name());
+    const auto& program = isf_.programs[index];
+    set_inputs(program, moment);
+    program.set("RENDERSIZE", glm::vec2(target.texels.width, target.texels.height));
+    graphics_->functions().UseProgram(program.name());
     graphics_->draw(target, true);
     if (pass.target.empty()) return &output_;
     Buffer& buffer = buffers_[pass.target];

@@ -44,8 +44,8 @@ std::string escaped(const std::string& text) {
   return html;
 }
 
-/// The part of a picture within `from`, in another size, each pixel the mean of what it covers. What
-/// is beyond the picture is as its edge.
+/// The part of a picture within `from`, in another size, each pixel the mean of what it covers.
+/// What is beyond the picture is as its edge.
 void shrink_into(renderer::View<const std::uint32_t> picture, const renderer::Rect& from,
                  renderer::View<std::uint32_t> out) {
   for (int y = 0; y < out.height; ++y)
@@ -100,7 +100,7 @@ struct Gallery::Parts {
   content::Hands hands;
   HandStage stage;
   std::uint64_t next_sample = 0;
-  glm::ivec2 size_px{0};                 ///< of what is kept of a picture
+  glm::ivec2 size_px{0};                ///< of what is kept of a picture
   std::optional<glm::dvec2> middle_px;  ///< of it, smoothed
   std::vector<Entry> entries;
 
@@ -116,9 +116,7 @@ struct Gallery::Parts {
     next_sample = 0;
     middle_px.reset();
   }
-  std::int64_t time_ns(int step) const {
-    return seconds_to_ns(0.5 + step / kRate_hz);
-  }
+  std::int64_t time_ns(int step) const { return seconds_to_ns(0.5 + step / kRate_hz); }
   int steps() const { return kSettling + static_cast<int>(wanted.seconds * kRate_hz); }
   /// The steps whose pictures are kept.
   bool is_kept(int step) const {
@@ -208,8 +206,7 @@ Result<double> Gallery::show(const std::string& content) {
     for (std::size_t i = 0; i < mixers.size(); ++i) {
       if (!hands[i].is_there) continue;
       const auto begin_ns = now_ns();
-      const auto drawn =
-          mixers[i].draw(hands[i], hands[1 - i], ns_to_seconds(all.time_ns(step)));
+      const auto drawn = mixers[i].draw(hands[i], hands[1 - i], ns_to_seconds(all.time_ns(step)));
       if (!drawn) return tl::make_unexpected(drawn.error());
       took_ms.push_back(ns_to_ms(now_ns() - begin_ns));
     }
@@ -245,8 +242,7 @@ Result<fs::path> Gallery::write_page() const {
   }
   page += "</main></html>\n";
   const auto file = fs::path(all.wanted.folder) / "index.html";
-  if (auto written = write_whole(file, page); !written)
-    return tl::make_unexpected(written.error());
+  if (auto written = write_whole(file, page); !written) return tl::make_unexpected(written.error());
   return file;
 }
 

@@ -86,7 +86,8 @@ Rect Photographer::draw_truth(std::int64_t time_ns) {
     auto& surface = surfaces_[static_cast<std::size_t>(side)];
     pose(hand, *joints, surface);
     region = region.joined(bounds_of(surface.position_px));
-    drawn.push_back({&hand.mesh, renderer::MipView{}, surface.position_px, surface.depth_m, surface.light});
+    drawn.push_back(
+        {&hand.mesh, renderer::MipView{}, surface.position_px, surface.depth_m, surface.light});
   }
   region = region.within(picture_.width(), picture_.height());
   if (!region.empty()) painter_->draw(drawn, region);

@@ -9,8 +9,8 @@
 
 namespace handcast::client {
 
-/// A rig "desk" whose supervisor gives read-only descriptors of rings, as the real one does. It
-/// answers only inside while_it_turns().
+/// A rig "desk" whose supervisor gives descriptors of rings, as the real one does: read-only, but
+/// for the rings of guests. It answers only inside while_it_turns().
 class RigWithRings : public supervisor::Control {
  protected:
   static ipc::Segment notes(const std::string& stream, int slots = 8) {
@@ -29,7 +29,9 @@ class RigWithRings : public supervisor::Control {
       for (const auto& [name, fd] : rings) {
         answer["rings"].push_back(name);
         const auto path = "/proc/self/fd/" + std::to_string(fd);
-        owned.emplace_back(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+        const bool is_for_guests =
+            name.is_string() && name.template get<std::string>().starts_with("guest.");
+        owned.emplace_back(::open(path.c_str(), (is_for_guests ? O_RDWR : O_RDONLY) | O_CLOEXEC));
         descriptors.push_back(owned.back().get());
       }
       reply(answer, descriptors);

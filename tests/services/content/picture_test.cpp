@@ -51,7 +51,7 @@ TEST_F(PictureTest, IsReadWithItsAlphaPremultiplied) {
       .write(reinterpret_cast<const char*>(kHalfTransparent), sizeof kHalfTransparent);
   const auto source = open(file("a.png"));
   ASSERT_TRUE(source) << source.error().what;
-  EXPECT_EQ(drawn(**source).at(5, 5), 0x80003264u);  // 200 and 100 by 128 / 255
+  EXPECT_EQ(drawn(**source).at(5, 5), 0x80004893u);  // half of the light of 200 and 100
 }
 
 TEST_F(PictureTest, IsDrawnOnceUntilItsFitChanges) {

@@ -18,8 +18,8 @@ namespace {
 using testing::UnorderedElementsAreArray;
 using Paths = std::set<std::string>;
 
-const std::vector<std::string> kServices{"camera",    "pose",     "landmarks",
-                                         "projector", "content", "observer", "exporter"};
+const std::vector<std::string> kServices{"camera",  "pose",     "landmarks", "projector",
+                                         "content", "observer", "exporter"};
 
 /// What the programs of this build say about themselves.
 const Catalogue& built() {

@@ -38,8 +38,8 @@ struct Hand {
   Skinned skinned;
 
   DrawnHand drawn() const {
-    return {&surface.mesh(), texture.view(), skinned.projected_px, skinned.depth_m,
-            skinned.light,   revision,       revision};
+    return {&surface.mesh(), texture.view(), skinned.projected_px, skinned.depth_m, skinned.light,
+            revision,        revision};
   }
 };
 
