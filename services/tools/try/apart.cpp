@@ -21,11 +21,11 @@ namespace handcast::trial {
 namespace {
 
 /// The child: one report a line.
-[[noreturn]] void draw_into(int fd, const Wanted& wanted) {
+[[noreturn]] void draw_into(int fd, const Wanted& wanted, const Draw& draw) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  draw_source(wanted, [fd](const Report& report) {
+  draw(wanted, [fd](const Report& report) {
     const auto line = report.dump(-1, ' ', false, Report::error_handler_t::replace) + "\n";
     for (std::size_t done = 0; done < line.size();) {
       const auto count = write(fd, line.data() + done, line.size() - done);
@@ -79,7 +79,7 @@ Report failed(const Wanted& wanted, const char* what) {
 
 }  // namespace
 
-Report draw_apart(const Wanted& wanted) {
+Report draw_apart(const Wanted& wanted, const Draw& draw) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) return failed(wanted, std::strerror(errno));
   const UniqueFd output(ends[0]);
@@ -87,7 +87,7 @@ Report draw_apart(const Wanted& wanted) {
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child < 0) return failed(wanted, std::strerror(errno));
-  if (child == 0) draw_into(input.get(), wanted);
+  if (child == 0) draw_into(input.get(), wanted, draw);
   input.reset();
   const auto heard = listen(output.get(), wanted.patience_s);
   if (heard.is_hung) kill(child, SIGKILL);

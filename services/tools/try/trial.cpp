@@ -124,7 +124,7 @@ class Trial {
 
   Report run() {
     if (auto opened = open(); !opened) {
-      report_["error"] = opened.error().what;
+      note_error(opened.error());
     } else {
       give_pictures();
       draw_all();
@@ -136,6 +136,7 @@ class Trial {
 
  private:
   Result<void> open();
+  void note_error(const Error& error);
   void give_pictures();
   void draw_all();
   Result<bool> draw(int frame);
@@ -149,8 +150,10 @@ class Trial {
   const std::function<void(const Report&)>& tell_;
   Report report_;
   Deadline until_;
+  std::string lone_;  ///< how the chain names its only element
   std::optional<MovingHands> hands_;
   std::array<renderer::Texture, 2> cards_;
+  bool uses_cards_ = false;
   std::optional<content::Chain> chain_;
   renderer::Texture picture_, first_;
   std::vector<double> ms_;  ///< of the pictures
@@ -161,6 +164,7 @@ Result<void> Trial::open() {
   if (!resolved) return tl::make_unexpected(resolved.error());
   const auto written = config::parse_content(*resolved);
   if (!written) return tl::make_unexpected(written.error());
+  if (written->size() == 1) lone_ = fmt::format("{}:{}: ", (*written)[0].kind, (*written)[0].what);
   auto hands = MovingHands::load();
   if (!hands) return tl::make_unexpected(hands.error());
   hands_.emplace(std::move(*hands));
@@ -172,8 +176,10 @@ Result<void> Trial::open() {
   const auto with_cards = [this, opened = 0](const content::Opening& like) mutable {
     auto source = content::open_source(like);
     const bool is_lowest = opened++ == 0;
-    if (source && ((*source)->inputs() == 2 || (is_lowest && (*source)->inputs() == 1)))
-      *source = std::make_unique<WithCards>(std::move(*source), cards_);
+    if (!source || (*source)->inputs() == 0 || ((*source)->inputs() == 1 && !is_lowest))
+      return source;
+    uses_cards_ = true;
+    *source = std::make_unique<WithCards>(std::move(*source), cards_);
     return source;
   };
   const auto begin_ns = now_ns();
@@ -189,6 +195,11 @@ Result<void> Trial::open() {
   return {};
 }
 
+void Trial::note_error(const Error& error) {
+  const bool is_lone = !lone_.empty() && error.what.starts_with(lone_);
+  report_["error"] = error.what.substr(is_lone ? lone_.size() : 0);
+}
+
 /// Gives a test card for each picture that can be set and is not.
 void Trial::give_pictures() {
   const auto file =
@@ -197,8 +208,7 @@ void Trial::give_pictures() {
   for (const auto& parameter : chain_->parameters()) {
     if (parameter.kind != Kind::picture || is_set(parameter.name)) continue;
     if (!renderer::write_png(file, std::as_const(cards_[1]).view())) return;
-    if (const auto set = chain_->set(parameter.name, file.string()); !set)
-      report_["error"] = set.error().what;
+    if (const auto set = chain_->set(parameter.name, file.string()); !set) note_error(set.error());
   }
   std::error_code absent;
   std::filesystem::remove(file, absent);
@@ -214,8 +224,8 @@ bool Trial::is_set(std::string_view name) const {
 Result<bool> Trial::draw(int frame) {
   const double time_s = frame / kRate_hz;
   const auto both = hands_->at(time_s);
-  paint_card(time_s, 0, cards_[0]);
-  paint_card(time_s, 1, cards_[1]);
+  for (int which = 0; which < 2 && uses_cards_; ++which)
+    paint_card(time_s, which, cards_[static_cast<std::size_t>(which)]);
   content::Moment moment;
   moment.time_s = time_s;
   moment.step_s = 1 / kRate_hz;
@@ -250,7 +260,7 @@ void Trial::draw_all() {
   for (int frame = 0; frame < wanted_.frames && goes_on && (frame < 1 || !until_.passed());
        ++frame) {
     const auto drew = draw(frame);
-    if (!drew) report_["error"] = drew.error().what;
+    if (!drew) note_error(drew.error());
     goes_on = drew || drew.error().code == Errc::bad_data || drew.error().code == Errc::timeout;
     if (drew && frame == 0) save("first");
     if (drew && frame == wanted_.frames / 2 && frame > 0) save("middle");
@@ -272,7 +282,7 @@ void Trial::save(std::string_view which) {
   if (written)
     report_["files"].push_back(file.string());
   else
-    report_["error"] = written.error().what;
+    note_error(written.error());
 }
 
 void Trial::try_parameters() {
