@@ -49,7 +49,7 @@ void main() {
   if (PASSINDEX == 0) {
     vec4 near = texelFetch(hand_bone, texel, 0), place = texelFetch(hand_rest, texel, 0);
     gl_FragColor = vec4(0.0);
-    if (near.y < -4.0 || near.w == 0.0) return;
+    if (near.y < -9.0 || near.w == 0.0) return;
     vec2 p = place.xz;
     float bright = 0.0, when = 1.0, facet = 0.0;
     for (int layer = 0; layer < 2; ++layer) {

@@ -107,12 +107,13 @@ void main() {
   float a = max(roughness * roughness, 0.004), a2 = a * a, spread = nh * nh * (a2 - 1.0) + 1.0;
   float d = a2 / (3.14159265 * spread * spread);
   float v = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-4);
-  vec3 f0 = mix(vec3(0.04), base.rgb, metalness), f = f0 + (1.0 - f0) * pow(1.0 - vh, 5.0);
-  vec3 gloss = specular * d * v * f * nl * 3.14159265;
+  vec3 f0 = mix(vec3(0.04), base.rgb, metalness), f = f0 + (1.0 - f0) * pow(max(1.0 - vh, 0.0), 5.0);
+  float arm = 1.0 - smoothstep(14.0, 42.0, texelFetch(hand_rest, texel, 0).z);
+  vec3 gloss = arm * specular * d * v * f * nl * 3.14159265;
 
   vec3 lamp = strength * (1.0 - shade) * colour.rgb;
   vec3 light = base.rgb * (ambient + (1.0 - metalness) * nl * lamp) + min(gloss, vec3(1.5)) * lamp;
-  light += rim * pow(1.0 - nv, 3.0) * colour.rgb;
+  light += arm * rim * pow(max(1.0 - nv, 0.0), 3.0) * colour.rgb;
 
   if (skeleton > 0.0) {
     int j = int(texelFetch(hand_bone, texel, 0).x + 0.5);

@@ -41,7 +41,7 @@ void main() {
     vec4 near = texelFetch(hand_bone, texel, 0);
     vec3 p = texelFetch(hand_rest, texel, 0).xyz;
     gl_FragColor = vec4(0.0);
-    if (near.y < -4.0 || near.w == 0.0) return;
+    if (near.y < -9.0 || near.w == 0.0) return;
     float mirror = hand_side == 0 ? 1.0 : -1.0, lines = 0.0, glow = 0.0, number = 0.0;
     for (int j = 2; j < 26; ++j) {
       bool is_tip = j == 5 || (j > 5 && j % 5 == 0), is_root = j == 6 || j == 11 || j == 16 || j == 21;

@@ -49,7 +49,7 @@ void main() {
   } else if (PASSINDEX == 1) {
     vec4 near = texelFetch(hand_bone, texel, 0);
     vec3 p = texelFetch(hand_rest, texel, 0).xyz;
-    float on = near.y < -4.0 || near.w == 0.0 ? 0.0 : 1.0 - smoothstep(10.0, 42.0, p.z);
+    float on = near.y < -9.0 || near.w == 0.0 ? 0.0 : 1.0 - smoothstep(10.0, 42.0, p.z);
     gl_FragColor = vec4(p, on * (0.55 + 0.45 * (1.0 - smoothstep(0.0, 16.0, near.y))));
   } else {
     vec4 it = texelFetch(shape, texel, 0);
