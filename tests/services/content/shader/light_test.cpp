@@ -96,7 +96,8 @@ TEST_F(LightTest, GlossOfASurfaceThatFacesTheLightIsGgx) {
   const auto levels = lit(0xff000000u);
   int count = 0;
   for (const auto& place : places()) {
-    if (glm::dot(place.normal, glm::normalize(-place.at_m)) < 0.9995) continue;
+    const bool is_on_arm = glm::distance(place.at_m, both_[0].joints_m[12]) > 0.07f;
+    if (is_on_arm || glm::dot(place.normal, glm::normalize(-place.at_m)) < 0.9995) continue;
     ++count;
     ASSERT_NEAR(levels[place.index], 0.04 * 0.25 / std::pow(0.5, 4), 0.01);
   }
