@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/content/hand_content.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -11,10 +13,6 @@ namespace handcast::content {
 namespace {
 
 std::string_view name_of(Side side) { return side == Side::left ? "left" : "right"; }
-
-const std::string& content_of(const config::Content& settings, Side side) {
-  return side == Side::left ? settings.left : settings.right;
-}
 
 }  // namespace
 
@@ -28,6 +26,11 @@ HandContent::HandContent(Opening like, config::Content settings,
 /// Errors: bad_config (the content or the transition is wrong), those of their sources.
 Result<void> HandContent::change(const std::string& content, std::string_view transition,
                                  double seconds) {
+  if (content == distrusted_)
+    return fail(Errc::bad_config,
+                fmt::format("{}: the content service died with its first picture: does it hang? "
+                            "`handcast content` tries it again",
+                            content));
   const auto written = config::parse_content(content);
   if (!written) return tl::make_unexpected(written.error());
   auto chain = Chain::open(*written, like_);
@@ -41,7 +44,7 @@ Result<void> HandContent::change(const std::string& content, std::string_view tr
 }
 
 void HandContent::start() {
-  const auto& content = content_of(settings_, like_.side);
+  const auto& content = content_of_settings();
   const auto shown = change(content, "cut", 0);
   if (shown) return;
   (void)change("builtin:white", "cut", 0);
@@ -64,6 +67,7 @@ void HandContent::obey(const msg::ContentCommand& command) {
 Needs HandContent::needs() const { return mixer_.needs(); }
 
 void HandContent::note_fault(const Error& error) {
+  state_.trying.set("");
   if (state_.fault.view() == error.what) return;
   state_.fault.set(error.what);
   log::warning("{}: {}", name_of(like_.side), printable(error.what));
@@ -77,6 +81,7 @@ bool HandContent::draw(const HandState& hand, const HandState& other, std::int64
   const bool is_first = std::exchange(is_new_, false) || state_.pictures == 0;
   if (!drawn.value_or(false) && !is_first) return false;
   publish(time_ns);
+  state_.trying.set("");
   constexpr float kShare = 0.05f;  // of the newest in the mean
   const auto took_ms = static_cast<float>(ns_to_ms(now_ns() - begin_ns));
   // The first picture makes what the others use.

@@ -16,6 +16,19 @@ class HandContent {
   /// Takes the writer of its ring. Shows nothing until start(). `like`: size, side and meshes.
   HandContent(Opening like, config::Content settings, ipc::Writer<msg::ContentPicture> pictures);
 
+  /// A content that this service died with before its first picture: start() and obey() refuse it
+  /// until trust() is called.
+  /// @{
+  void distrust(std::string_view content) { distrusted_ = content; }
+  void trust() { distrusted_.clear(); }
+  /// @}
+  /// Notes in state() what start() or obey() will begin.
+  /// @{
+  void announce() { state_.trying.set(content_of_settings()); }
+  void announce(const msg::ContentCommand& command) {
+    if (command.is_for(like_.side)) state_.trying.set(command.content.view());
+  }
+  /// @}
   /// Shows the content of the settings, without a transition. What cannot be opened becomes the
   /// fault in state(), and white is shown.
   void start();
@@ -36,6 +49,9 @@ class HandContent {
 
  private:
   Result<void> change(const std::string& content, std::string_view transition, double seconds);
+  const std::string& content_of_settings() const {
+    return like_.side == Side::left ? settings_.left : settings_.right;
+  }
   void publish(std::int64_t time_ns);
   void note_fault(const Error& error);
 
@@ -44,6 +60,7 @@ class HandContent {
   Mixer mixer_;
   ipc::Writer<msg::ContentPicture> pictures_;
   msg::ShownContent state_;
+  std::string distrusted_;
   bool is_new_ = false;  ///< a command has changed the content since the last picture
 };
 

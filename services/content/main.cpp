@@ -70,19 +70,6 @@ static void take_poses(service::Context& context, Contents& all) {
   }
 }
 
-/// Obeys all commands that have come. True if there was one.
-static bool take_commands(service::Context& context, Contents& all) {
-  bool has_come = false;
-  while (all.commands.await(Deadline::now())) {
-    const auto command = all.commands.next(Deadline::now());
-    if (!command && command.error().code != Errc::timeout) context.tolerate(command.error());
-    if (!command) break;
-    for (auto& worn : all.worn) worn.obey(**command);
-    has_come = true;
-  }
-  return has_come;
-}
-
 static void publish_state(Contents& all) {
   auto state = all.states.loan();
   if (!state) return;
@@ -90,6 +77,52 @@ static void publish_state(Contents& all) {
   state->header.origin_ns = now_ns();
   for (std::size_t i = 0; i < all.worn.size(); ++i) state->hands[i] = all.worn[i].state();
   all.states.publish(std::move(state));
+}
+
+/// The newest commands for both hands that have come, in their order; older ones are passed over.
+static std::vector<msg::ContentCommand> take_commands(service::Context& context, Contents& all) {
+  std::vector<msg::ContentCommand> commands;
+  while (all.commands.await(Deadline::now())) {
+    const auto command = all.commands.next(Deadline::now());
+    if (!command && command.error().code != Errc::timeout) context.tolerate(command.error());
+    if (!command) break;
+    std::erase_if(commands, [&](const auto& old) { return (old.hands & ~(*command)->hands) == 0; });
+    commands.push_back(**command);
+  }
+  return commands;
+}
+
+/// Obeys commands. What is begun is announced before, because it may end this process.
+static void obey(Contents& all, const std::vector<msg::ContentCommand>& commands) {
+  for (const auto& command : commands) {
+    for (auto& worn : all.worn) worn.announce(command);
+    publish_state(all);
+    for (auto& worn : all.worn) worn.obey(command);
+  }
+}
+
+/// Shows what was asked for last: in the rig file, or by a command. `before`: the state that a
+/// process before this one has left.
+static void start(service::Context& context, Contents& all,
+                  const std::optional<msg::ContentState>& before) {
+  for (std::size_t i = 0; i < all.worn.size(); ++i) {
+    if (before) all.worn[i].distrust(before->hands[i].trying.view());
+    all.worn[i].announce();
+  }
+  publish_state(all);
+  for (auto& worn : all.worn) worn.start();
+  auto commands = take_commands(context, all);
+  for (auto& command : commands) command.transition_s = 0;
+  obey(all, commands);
+  for (auto& worn : all.worn) worn.trust();
+}
+
+/// The last state in a ring; empty if there is none.
+static std::optional<msg::ContentState> last_state(const service::Context& context) {
+  auto reader = ipc::Reader<msg::ContentState>::watch(must(context.ring("content.state")));
+  if (!reader) return std::nullopt;
+  const auto state = reader->latest(Deadline::now());
+  return state ? std::optional(**state) : std::nullopt;
 }
 
 /// The newest image, as it shows the hands; empty if no content needs it.
@@ -140,6 +173,7 @@ static void run_content(service::Context& context) {
   auto hands = must(content::Hands::load(rig, context.calibration()));
   context.stand_by();
   const auto guests = take_guests(context);
+  const auto before = last_state(context);
   Contents all{
       .hands = std::move(hands),
       .worn = {},
@@ -153,16 +187,18 @@ static void run_content(service::Context& context) {
     like.ring = [&guests](std::string_view guest) { return open_again(guests, guest); };
     all.worn.emplace_back(std::move(like), rig.content,
                           must(context.writer<msg::ContentPicture>(stream)));
-    all.worn.back().start();
   }
+  start(context, all, before);
   context.ready();
   const auto period_ns = seconds_to_ns(1 / rig.content.rate_hz);
   std::int64_t due_ns = now_ns(), state_ns = due_ns;
   std::uint64_t pictures = 0;
   while (context.running()) {
     // A command is obeyed at once.
-    const bool is_changed =
-        all.commands.await(Deadline::at_ns(due_ns)) && take_commands(context, all);
+    std::vector<msg::ContentCommand> commands;
+    if (all.commands.await(Deadline::at_ns(due_ns))) commands = take_commands(context, all);
+    obey(all, commands);
+    const bool is_changed = !commands.empty();
     const std::int64_t begin_ns = now_ns();
     if (begin_ns < due_ns && !is_changed) continue;
     take_poses(context, all);

@@ -65,11 +65,9 @@ class Context {
     return ipc::Reader<T>::attach(std::move(*segment), wait.value_or(wait_));
   }
 
-  /// The memory of a ring that the service subscribes to, for readers that only look on
-  /// (ipc::Reader::watch()). Once for each ring. Errors: see writer().
-  Result<ipc::Segment> ring(std::string_view stream) {
-    return take_segment(stream, description_.subscribes);
-  }
+  /// The memory of a ring, for readers that only look on (ipc::Reader::watch()). Errors:
+  /// bad_config (there is no such ring), those of ipc::Segment::open().
+  Result<ipc::Segment> ring(std::string_view stream) const { return open_segment(stream); }
 
   /// Waits for the turn of a standby; returns at once in other processes. Call it after all
   /// preparations that two processes may do at the same time (models, pictures, memory) and before

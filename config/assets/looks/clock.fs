@@ -55,7 +55,7 @@ void main() {
   if (PASSINDEX == 0) {
     vec4 near = texelFetch(hand_bone, texel, 0), place = texelFetch(hand_rest, texel, 0);
     gl_FragColor = vec4(99.0, 99.0, 0.0, -1.0);
-    if (near.y < -4.0 || near.w == 0.0) return;
+    if (near.y < -9.0 || near.w == 0.0) return;
     vec3 p = place.xyz;
     float mirror = hand_side == 0 ? 1.0 : -1.0, seen = place.w < 0.0 ? -1.0 : 1.0;
     vec2 q = vec2(seen * (p.x - mirror * -1.0), -p.z - 50.0);

@@ -7,7 +7,7 @@
     {"NAME": "seconds", "LABEL": "Seconds to freeze", "TYPE": "float", "DEFAULT": 5.0, "MIN": 0.5, "MAX": 60.0},
     {"NAME": "warmth", "LABEL": "Warmth of a pinch", "TYPE": "float", "DEFAULT": 1.0, "MIN": 0.0, "MAX": 3.0},
     {"NAME": "wind", "LABEL": "Melting by moves", "TYPE": "float", "DEFAULT": 1.0, "MIN": 0.0, "MAX": 3.0},
-    {"NAME": "ice", "LABEL": "Colour", "TYPE": "color", "DEFAULT": [0.62, 0.88, 1.0, 1.0]}
+    {"NAME": "ice", "LABEL": "Colour", "TYPE": "color", "DEFAULT": [0.30, 0.70, 1.0, 1.0]}
   ],
   "PASSES": [
     {"TARGET": "crystals", "ONCE": true},
@@ -49,8 +49,8 @@ void main() {
   if (PASSINDEX == 0) {
     vec4 near = texelFetch(hand_bone, texel, 0), place = texelFetch(hand_rest, texel, 0);
     gl_FragColor = vec4(0.0);
-    if (near.y < -4.0 || near.w == 0.0) return;
-    vec2 p = place.xz + (place.w < 0.0 ? 0.0 : 0.0);
+    if (near.y < -9.0 || near.w == 0.0) return;
+    vec2 p = place.xz;
     float bright = 0.0, when = 1.0, facet = 0.0;
     for (int layer = 0; layer < 2; ++layer) {
       float size = layer == 0 ? 27.0 : 13.0;
@@ -72,7 +72,7 @@ void main() {
     }
     float rime = smoothstep(0.35, 0.85, noise(1.1 * p) * 0.6 + noise(0.35 * p) * 0.55);
     float edge = 1.0 - smoothstep(0.0, 9.0, near.y);
-    float film = 0.10 + 0.20 * rime + 0.30 * edge;
+    float film = 0.14 + 0.26 * rime + 0.35 * edge;
     if (film > bright) when = 0.45 + 0.5 * noise(0.16 * p) - 0.25 * edge;
     gl_FragColor = vec4(max(bright, film) * (1.0 - smoothstep(14.0, 42.0, place.z)), clamp(when, 0.02, 1.0), facet, 1.0);
   } else if (PASSINDEX == 1) {
@@ -91,8 +91,9 @@ void main() {
     float since = state.r - it.g;
     float frozen = smoothstep(0.0, 0.10, since), front = frozen * exp(-9.0 * max(since, 0.0));
     float glint = pow(0.5 + 0.5 * sin(40.0 * it.b + 1.7 * TIME + 12.0 * isf_FragNormCoord.x), 24.0);
-    vec3 light = mix(ice.rgb * ice.rgb * ice.rgb * 0.85, mix(ice.rgb, vec3(1.0), 0.35), it.r) * it.r * frozen;
-    light += vec3(1.0) * it.r * (0.55 * front + 0.9 * glint * frozen * step(0.5, it.r));
+    vec3 white = vec3(0.72, 0.90, 1.0);
+    vec3 light = mix(ice.rgb * ice.rgb, mix(ice.rgb, white, 0.55), it.r) * it.r * frozen;
+    light += white * it.r * (0.45 * front + 0.6 * glint * frozen * step(0.5, it.r));
     float drops = smoothstep(0.62, 0.80, noise(vec2(isf_FragNormCoord.x * 150.0, isf_FragNormCoord.y * 60.0 + 3.0 * TIME)));
     light += vec3(0.10, 0.42, 0.85) * state.g * (0.25 + 0.9 * drops) * it.a;
     gl_FragColor = vec4(light, 1.0);

@@ -55,7 +55,7 @@ void main() {
     vec3 place = texelFetch(hand_rest, texel, 0).xyz;
     vec2 p = (place.xz - hand_rest_joint[0].xz) * vec2(hand_side == 0 ? 1.0 : -1.0, -1.0);
     float r = length(p) + 0.5;
-    float on = near.y < -4.0 || near.w == 0.0 ? 0.0 : 1.0 - smoothstep(10.0, 42.0, place.z);
+    float on = near.y < -9.0 || near.w == 0.0 ? 0.0 : 1.0 - smoothstep(10.0, 42.0, place.z);
     gl_FragColor = vec4(p, atan(p.y, p.x) + 2.6 * log(r), on);
   } else {
     vec4 it = texelFetch(disc, texel, 0);

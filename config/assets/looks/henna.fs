@@ -89,7 +89,7 @@ void main() {
   if (PASSINDEX == 0) {
     vec4 near = texelFetch(hand_bone, texel, 0), place = texelFetch(hand_rest, texel, 0);
     gl_FragColor = vec4(0.0);
-    if (near.y < -4.0 || near.w == 0.0) return;
+    if (near.y < -9.0 || near.w == 0.0) return;
     vec3 p = place.xyz;
     vec3 middle = 0.25 * (hand_rest_joint[12] + hand_rest_joint[17] + hand_rest_joint[11] + hand_rest_joint[16]);
     middle.x = hand_rest_joint[0].x * 0.4;

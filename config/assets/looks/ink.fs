@@ -6,7 +6,7 @@
   "INPUTS": [
     {"NAME": "first", "LABEL": "Ink", "TYPE": "color", "DEFAULT": [0.05, 0.55, 1.0, 1.0]},
     {"NAME": "second", "LABEL": "Second ink", "TYPE": "color", "DEFAULT": [1.0, 0.08, 0.55, 1.0]},
-    {"NAME": "lasts", "LABEL": "Seconds it lasts", "TYPE": "float", "DEFAULT": 5.0, "MIN": 0.5, "MAX": 60.0},
+    {"NAME": "lasts", "LABEL": "Seconds it lasts", "TYPE": "float", "DEFAULT": 7.0, "MIN": 0.5, "MAX": 60.0},
     {"NAME": "swirl", "LABEL": "Swirl", "TYPE": "float", "DEFAULT": 1.0, "MIN": 0.0, "MAX": 3.0},
     {"NAME": "nib", "LABEL": "Width of the finger's line, mm", "TYPE": "float", "DEFAULT": 9.0, "MIN": 2.0, "MAX": 30.0}
   ],
@@ -37,15 +37,14 @@ void main() {
     if (place.w == 0.0) return;
     vec3 p = place.xyz;
     // Swirls that turn slowly, mm/s, without sources; ink from the tips flows to the arm.
-    vec2 big = noise(0.045 * p.xz + vec2(0.0, -0.10 * TIME)).zy, small = noise(0.12 * p.xz + vec2(0.13 * TIME, 5.0)).zy;
-    vec2 flow = swirl * vec2(1.0, -1.0) * (34.0 * big + 17.0 * small);
-    bool drawn = other_there == 1 && hand_there == 1;
-    flow.y += drawn ? 4.0 : 20.0;
+    vec2 big = noise(0.045 * p.xz + vec2(0.0, -0.10 * TIME)).zy, small = noise(0.09 * p.xz + vec2(0.13 * TIME, 5.0)).zy;
+    vec2 flow = swirl * vec2(1.0, -1.0) * (42.0 * big + 30.0 * small);
+    float drawn = other_there == 1 && hand_there == 1 ? 1.0 - smoothstep(0.13, 0.19, distance(other_joint[10], hand_joint[12])) : 0.0;
+    flow.y += mix(30.0, 4.0, drawn);
     float mm = (hand_back_uv[14].y - hand_back_uv[11].y) / (hand_rest_joint[11].z - hand_rest_joint[14].z);
     vec2 uv_flow = flow * vec2(sign(place.w) * RENDERSIZE.y / RENDERSIZE.x, -1.0) * mm;
     vec4 old = texture(fluid, isf_FragNormCoord - uv_flow * min(TIMEDELTA, 0.05));
     old *= exp(-TIMEDELTA / lasts);
-    float pulse = 0.65 + 0.35 * sin(1.7 * TIME);
     float well = 0.0, other_well = 0.0;
     for (int finger = 0; finger < 5; ++finger) {
       float d = distance(p, hand_rest_joint[5 + 5 * finger]), here = exp(-d * d / 60.0);
@@ -53,12 +52,12 @@ void main() {
       if (finger % 2 == 0) well = max(well, here * beat);
       else other_well = max(other_well, here * (1.0 - beat));
     }
-    if (drawn) {
+    if (drawn > 0.0) {
       float d = 1000.0 * distance(texture(hand_position, isf_FragNormCoord).xyz, other_joint[10]);
       float line = 1.0 - smoothstep(0.35 * nib, 1.1 * nib, max(d - 9.0, 0.0));
       float mixing = 0.5 + 0.5 * sin(0.8 * TIME);
-      well = line * mixing;
-      other_well = line * (1.0 - mixing);
+      well = mix(well, line * mixing, drawn);
+      other_well = mix(other_well, line * (1.0 - mixing), drawn);
       old.b = max(old.b * exp(-3.0 * TIMEDELTA), line);
     } else {
       old.b *= exp(-3.0 * TIMEDELTA);

@@ -68,7 +68,7 @@ void main() {
     vec4 near = texelFetch(hand_bone, texel, 0);
     vec4 place = texelFetch(hand_rest, texel, 0);
     gl_FragColor = vec4(0.0);
-    if (near.y < -4.0 || near.w == 0.0) return;
+    if (near.y < -9.0 || near.w == 0.0) return;
     vec3 p = place.xyz;
     vec3 warp = vec3(noise(0.09 * p.xz), noise(0.09 * p.zx + 31.0), noise(0.09 * p.xz + 77.0)) - 0.5;
     float large = border((p + 9.0 * warp) / 15.0) * 15.0, small = border((p + 5.0 * warp) / 6.0 + 20.0) * 6.0;

@@ -49,7 +49,7 @@ void main() {
   if (PASSINDEX == 0) {
     vec4 near = texelFetch(hand_bone, texel, 0), place = texelFetch(hand_rest, texel, 0);
     gl_FragColor = vec4(0.0);
-    if (near.y < -6.0 || near.w == 0.0) return;
+    if (near.y < -9.0 || near.w == 0.0) return;
     vec3 p = place.xyz;
     float mirror = hand_side == 0 ? 1.0 : -1.0;
     vec3 root = vec3(mirror * 2.0, 0.0, 40.0);

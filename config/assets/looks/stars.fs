@@ -4,7 +4,7 @@
   "ISFVSN": "2",
   "CATEGORIES": ["Generator"],
   "INPUTS": [
-    {"NAME": "density", "LABEL": "Stars", "TYPE": "float", "DEFAULT": 0.6, "MIN": 0.0, "MAX": 1.0},
+    {"NAME": "density", "LABEL": "Stars", "TYPE": "float", "DEFAULT": 0.4, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "drift", "LABEL": "Drift, mm/s", "TYPE": "float", "DEFAULT": 9.0, "MIN": 0.0, "MAX": 80.0},
     {"NAME": "figures", "LABEL": "Constellations", "TYPE": "float", "DEFAULT": 1.0, "MIN": 0.0, "MAX": 1.5},
     {"NAME": "nebula", "LABEL": "Nebula", "TYPE": "color", "DEFAULT": [0.22, 0.14, 0.75, 1.0]}
@@ -14,9 +14,10 @@
 // figure: r: lines of the constellations, g: their stars, b: number of the star, a: 1 on the hand.
 
 float hash(vec2 p) {
-  p = fract(p * vec2(0.3183, 0.3678));
-  p += dot(p, p + 17.13);
-  return fract(p.x * p.y * 31.7);
+  uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
+  uint h = (q.x ^ q.y) * 1597334673u;
+  h = (h ^ (h >> 15u)) * 2246822519u;
+  return float((h ^ (h >> 13u)) >> 8u) / 16777216.0;
 }
 float noise(vec2 p) {
   vec2 i = floor(p), f = fract(p);
@@ -26,12 +27,12 @@ float noise(vec2 p) {
 
 // A star in some of the cells, mm: a disc with a halo.
 vec3 stars(vec2 p, float cell, float radius, float share, float seed) {
-  vec2 i = floor(p / cell), f = (p / cell - i - 0.28 - 0.44 * vec2(hash(i + seed), hash(i + seed + 5.9))) * cell;
-  float own = hash(i + seed + 3.7), d = length(f);
+  vec2 i = floor(p / cell), f = (p / cell - i - 0.2 - 0.6 * vec2(hash(i + seed), hash(i + seed + 6.0))) * cell;
+  float own = hash(i + seed + 37.0), d = length(f);
   float twinkle = 0.75 + 0.25 * sin(TIME * (2.0 + 5.0 * own) + 40.0 * own);
-  float size = radius * (0.65 + 0.7 * hash(i + seed + 8.1));
+  float size = radius * (0.45 + 0.85 * own / max(share, 0.01) * hash(i + seed + 81.0));
   float light = (1.0 - smoothstep(0.5 * size, size, d)) + 0.35 * exp(-d * d / (5.0 * size * size));
-  return mix(vec3(0.65, 0.80, 1.0), vec3(1.0, 0.80, 0.55), hash(i + seed + 1.3)) * light * twinkle * step(own, share);
+  return mix(vec3(0.60, 0.82, 1.0), vec3(1.0, 0.80, 0.60), step(0.75, hash(i + seed + 13.0))) * light * twinkle * step(own, share);
 }
 
 void main() {
@@ -40,7 +41,7 @@ void main() {
     vec4 near = texelFetch(hand_bone, texel, 0);
     vec3 p = texelFetch(hand_rest, texel, 0).xyz;
     gl_FragColor = vec4(0.0);
-    if (near.y < -4.0 || near.w == 0.0) return;
+    if (near.y < -9.0 || near.w == 0.0) return;
     float mirror = hand_side == 0 ? 1.0 : -1.0, lines = 0.0, glow = 0.0, number = 0.0;
     for (int j = 2; j < 26; ++j) {
       bool is_tip = j == 5 || (j > 5 && j % 5 == 0), is_root = j == 6 || j == 11 || j == 16 || j == 21;
@@ -72,7 +73,7 @@ void main() {
   vec2 move = vec2(drift, 0.35 * drift) * TIME;
   vec3 light = stars(far + 0.3 * move, 6.5, 0.85, density, 1.0) * 0.7 + stars(mix(near, far, 0.5) + 0.7 * move, 11.0, 1.3, density, 20.0) * 0.9;
   light += stars(near + 1.3 * move, 21.0, 2.1, density, 50.0);
-  float cloud = noise(0.022 * far + 0.01 * move) * 0.65 + noise(0.06 * far - 0.012 * move) * 0.35;
+  float cloud = noise(mat2(0.6, 0.8, -0.8, 0.6) * (0.022 * far) + 0.01 * move) * 0.65 + noise(mat2(0.8, -0.6, 0.6, 0.8) * (0.06 * far) - 0.012 * move) * 0.35;
   light += nebula.rgb * smoothstep(0.38, 0.85, cloud) * 0.75 + vec3(0.5, 0.06, 0.32) * smoothstep(0.55, 0.9, noise(0.035 * far + 40.0)) * 0.55;
   float beat = 0.8 + 0.2 * sin(2.0 * TIME + 40.0 * it.b);
   light += figures * (vec3(0.35, 0.6, 1.0) * it.r * 0.75 + vec3(1.0, 0.95, 0.82) * it.g * beat);

@@ -49,7 +49,7 @@ void main() {
   } else if (PASSINDEX == 1) {
     vec4 near = texelFetch(hand_bone, texel, 0);
     vec3 p = texelFetch(hand_rest, texel, 0).xyz;
-    float on = near.y < -4.0 || near.w == 0.0 ? 0.0 : 1.0 - smoothstep(10.0, 42.0, p.z);
+    float on = near.y < -9.0 || near.w == 0.0 ? 0.0 : 1.0 - smoothstep(10.0, 42.0, p.z);
     gl_FragColor = vec4(p, on * (0.55 + 0.45 * (1.0 - smoothstep(0.0, 16.0, near.y))));
   } else {
     vec4 it = texelFetch(shape, texel, 0);
@@ -73,9 +73,9 @@ void main() {
     light += shallow.rgb * 0.5 * exp(-max(below, 0.0) / 5.0) * wet;
     // Bubbles that rise, and drops above that run down.
     vec2 run = vec2(across, height);
-    vec2 b = (run - vec2(1.5 * sin(0.2 * height + TIME), 34.0 * TIME)) / 13.0, i = floor(b), f = (b - i - 0.25 - 0.5 * hash(i)) * 13.0;
+    vec2 b = (run - vec2(1.5 * sin(0.2 * height + TIME), 34.0 * TIME)) / 15.0, i = floor(b), f = (b - i - 0.25 - 0.5 * hash(i)) * 15.0;
     float bubble = length(f), radius = 1.2 + 1.3 * hash(i + 5.0);
-    light += vec3(0.8, 1.0, 1.0) * wet * step(0.55, hash(i + 9.0)) * (1.0 - smoothstep(0.3, 0.9, abs(bubble - radius))) * 0.9;
+    light += vec3(0.8, 1.0, 1.0) * wet * step(0.70, hash(i + 9.0)) * (1.0 - smoothstep(0.3, 0.9, abs(bubble - radius))) * 0.9;
     float column = floor(across / 6.5), own = hash(vec2(column, 2.0));
     float fall = (height + (26.0 + 60.0 * own) * TIME * (0.25 + steep)) / (46.0 + 30.0 * own), k = floor(fall), along = (fall - k) * (46.0 + 30.0 * own);
     float x = across - 6.5 * (column + 0.5) - 1.4 * sin(0.25 * height + 9.0 * own);

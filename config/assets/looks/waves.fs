@@ -15,5 +15,5 @@ void main() {
   float phase = (-place.z + bend - speed * TIME) / length;
   float crest = pow(0.5 + 0.5 * cos(6.2832 * phase), 5.0);
   vec3 colour = mix(0.10 * tint.rgb, tint.rgb, crest) + vec3(0.85) * pow(crest, 6.0);
-  gl_FragColor = vec4(colour, 1.0);
+  gl_FragColor = vec4(colour * (1.0 - smoothstep(14.0, 42.0, place.z)), 1.0);
 }

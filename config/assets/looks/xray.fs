@@ -77,7 +77,7 @@ void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   if (PASSINDEX == 0) {
     vec4 near = texelFetch(hand_bone, texel, 0);
-    if (near.y < -4.0 || near.w == 0.0) {
+    if (near.y < -9.0 || near.w == 0.0) {
       gl_FragColor = vec4(0.0, 0.0, 0.0, 1.0);
       return;
     }

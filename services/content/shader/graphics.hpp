@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -52,6 +53,10 @@ class Graphics {
   /// made transparent black before.
   void draw(const Target& target, bool clears);
 
+  /// The programs that are in use, by their texts.
+  using Programs = std::map<std::string, std::weak_ptr<const gl::Program>>;
+  Programs& programs() { return programs_; }
+
   /// One transparent black texel, for images that are not there.
   const Texels& nothing() const { return nothing_; }
   /// The largest side of a texture, px.
@@ -63,6 +68,7 @@ class Graphics {
   std::unique_ptr<gl::Context> context_;
   gl::VertexArray corners_;
   Texels nothing_;
+  Programs programs_;
   std::vector<std::uint32_t> scratch_;
 };
 

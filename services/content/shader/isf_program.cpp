@@ -92,7 +92,7 @@ std::string declarations_of(const IsfHead& head, const std::vector<std::string>&
     const auto name = name_in_glsl(image);
     text += fmt::format(
         "uniform sampler2D {0};\n#define _{1}_imgSize hc_size({0})\n"
-        "#define _{1}_imgRect vec4(vec2(0.0), hc_size({0}))\n#define _{1}_flip false\n",
+        "#define _{1}_imgRect vec4(0.0, 0.0, 1.0, 1.0)\n#define _{1}_flip false\n",
         name, image);
   }
   return text;

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "ipc/base/log.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/content/scaled.hpp"
 #include "services/content/settable_source.hpp"
@@ -56,11 +57,11 @@ class IsfSource final : public SettableSource {
     output_ = graphics_->make_target(GL_RGBA8, width_, height_);
   }
 
-  /// Errors: those of read_premultiplied_picture().
-  Result<void> load_imports(const fs::path& folder) {
+  /// An image that cannot be read is transparent black, and a warning.
+  void load_imports(const fs::path& folder) {
     for (const auto& import : isf_.head.imports)
-      if (auto loaded = load(import.name, folder / import.path); !loaded) return loaded;
-    return {};
+      if (const auto loaded = load(import.name, folder / import.path); !loaded)
+        log::warning("{}: {}", isf_.files.front().filename().string(), loaded.error().what);
   }
 
   int inputs() const override {
@@ -235,8 +236,7 @@ Result<std::unique_ptr<Source>> open_isf(const Opening& opening) {
   auto isf = IsfProgram::make(**graphics, file, opening);
   if (!isf) return tl::make_unexpected(isf.error());
   auto source = std::make_unique<IsfSource>(std::move(*graphics), std::move(*isf), opening);
-  if (auto loaded = source->load_imports(file.parent_path()); !loaded)
-    return tl::make_unexpected(loaded.error());
+  source->load_imports(file.parent_path());
   return source;
 }
 

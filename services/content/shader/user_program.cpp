@@ -170,6 +170,10 @@ UserStage plain_vertex_stage() {
 Result<UserProgram> UserProgram::make(Graphics& graphics, const UserStage& fragment,
                                       const UserStage& vertex,
                                       std::span<const std::string> samplers) {
+  const auto text = assembled(fragment, 0) + assembled(vertex, 0);
+  std::erase_if(graphics.programs(), [](const auto& each) { return each.second.expired(); });
+  auto& shared = graphics.programs()[text];
+  if (auto known = shared.lock()) return UserProgram(graphics, std::move(known));
   std::optional<Error> first;
   for (const int version : kVersions) {
     auto program = build(graphics, fragment, vertex, version);
@@ -177,7 +181,8 @@ Result<UserProgram> UserProgram::make(Graphics& graphics, const UserStage& fragm
       if (!first) first = program.error();
       continue;
     }
-    UserProgram made(graphics, std::move(*program));
+    UserProgram made(graphics, std::make_shared<const gl::Program>(std::move(*program)));
+    shared = made.program_;
     for (std::size_t unit = 0; unit < samplers.size(); ++unit)
       made.set(samplers[unit], static_cast<int>(unit));
     return made;

@@ -34,12 +34,13 @@ class UserProgram {
   UserProgram() = default;
   /// Compiles it, by the version of GLSL that takes it. `common`: of both preludes, after the
   /// version. `samplers`: the names of its images, in the order of their units. Errors
-  /// (bad_config): "FILE:LINE: message", with the text of the line.
+  /// (bad_config): "FILE:LINE: message", with the text of the line. Programs of the same text share
+  /// what was compiled, so set all uniforms for each picture.
   static Result<UserProgram> make(Graphics& graphics, const UserStage& fragment,
                                   const UserStage& vertex, std::span<const std::string> samplers);
 
   /// The program of OpenGL.
-  GLuint name() const { return program_.name(); }
+  GLuint name() const { return program_->name(); }
   /// Where a uniform is; -1 if the program does not use it.
   GLint location(const std::string& uniform) const;
   /// Sets a uniform; nothing happens if the program does not use it.
@@ -54,11 +55,11 @@ class UserProgram {
   /// @}
 
  private:
-  UserProgram(Graphics& graphics, gl::Program program)
+  UserProgram(Graphics& graphics, std::shared_ptr<const gl::Program> program)
       : graphics_(&graphics), program_(std::move(program)) {}
 
   Graphics* graphics_ = nullptr;
-  gl::Program program_;
+  std::shared_ptr<const gl::Program> program_;
   mutable std::map<std::string, GLint> locations_;
 };
 

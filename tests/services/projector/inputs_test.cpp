@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "ipc/ring/writer.hpp"
+#include "services/projector/contents.hpp"
 #include "services/projector/publish.hpp"
 #include "services/projector/test_pictures.hpp"
 #include "tests/frame_costs.hpp"

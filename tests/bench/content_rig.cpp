@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// What content costs a rig (config/rigs/twin.toml), and how fast it is there.
+//   bench_content_rig [--goals FILE] [--runs N]
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/client/rig_ring.hpp"
+#include "ipc/client/stream.hpp"
+#include "ipc/msg/content_command.hpp"
+#include "ipc/msg/content_picture.hpp"
+#include "ipc/msg/guest_picture.hpp"
+#include "ipc/msg/projection.hpp"
+#include "ipc/msg/stage_mark.hpp"
+#include "ipc/ring/writer.hpp"
+#include "tests/bench/control_rig.hpp"
+#include "tests/bench/goals.hpp"
+#include "tests/bench/percentiles.hpp"
+#include "tests/bench/rings_transports.hpp"
+
+namespace handcast::bench {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kRefresh_hz = 120, kContent_hz = 60;
+
+/// Sensors and projector at rates that two cores keep beside a content.
+std::vector<std::string> settings_with(const std::string& content) {
+  return {"camera.rate_hz=120",       "projector.rate_hz=120",   "observer.enabled=false",
+          "twin.motion=builtin:wave", "content.left=" + content, "content.right=" + content};
+}
+
+template <class T>
+client::Stream<T> stream_of(std::string_view name) {
+  auto stream = client::open_stream<T>("twin", name);
+  if (!stream) give_up(stream.error().what);
+  return std::move(*stream);
+}
+
+/// The frames of a rig for some seconds.
+struct Frames {
+  std::vector<double> frame_us;  ///< Stage::frame
+  int missed = 0;                ///< refreshes between two frames without one
+};
+
+Frames watch_frames(double seconds) {
+  auto marks = stream_of<msg::StageMarks>("marks.projector");
+  Frames frames;
+  std::int64_t last_ns = 0;
+  for (const auto until = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(seconds)));
+       !until.passed();) {
+    const auto sample = marks.next(Deadline::in(100ms));
+    if (!sample) continue;
+    const auto& message = **sample;
+    for (std::uint32_t i = 0; i < message.count; ++i) {
+      const auto& mark = message.marks[i];
+      if (mark.stage != msg::Stage::frame) continue;
+      frames.frame_us.push_back(ns_to_us(mark.end_ns - mark.begin_ns));
+      const double periods = ns_to_seconds(mark.begin_ns - last_ns) * kRefresh_hz;
+      if (last_ns != 0 && periods > 1.5) frames.missed += static_cast<int>(periods - 0.5);
+      last_ns = mark.begin_ns;
+    }
+  }
+  return frames;
+}
+
+ipc::Writer<msg::ContentCommand> command_writer() {
+  auto ring = client::rig_ring("twin", msg::kContentCommands);
+  if (!ring) give_up(ring.error().what);
+  auto writer = ipc::Writer<msg::ContentCommand>::attach(std::move(ring->segment));
+  if (!writer) give_up(writer.error().what);
+  return std::move(*writer);
+}
+
+/// Sends a command and waits for the first picture of it, ms.
+double change_ms(ipc::Writer<msg::ContentCommand>& commands, const std::string& content) {
+  auto states = stream_of<msg::ContentState>("content.state");
+  auto pictures = stream_of<msg::ContentPicture>("content.left");
+  msg::ContentCommand command;
+  command.header.frame_id = static_cast<std::uint64_t>(now_ns());
+  command.transition_s = 0.3F;
+  command.content.set(content);
+  const auto begin_ns = now_ns();
+  commands.publish(command);
+  for (const auto until = Deadline::in(10s); !until.passed();) {
+    const auto state = states.latest(Deadline::in(1s));
+    if (!state || (*state)->hands[0].command < command.header.frame_id) continue;
+    if (!(*state)->hands[0].fault.view().empty())
+      give_up(std::string((*state)->hands[0].fault.view()));
+    const auto picture = pictures.latest(Deadline::in(1s));
+    if (picture) return ns_to_ms((*picture)->header.published_ns - begin_ns);
+  }
+  give_up("no picture followed the command");
+}
+
+/// The red of the brightest lit pixel of a frame; empty without hands.
+std::optional<int> brightest_red(const msg::Projection& frame) {
+  if (frame.hand_count == 0) return std::nullopt;
+  int best = 0;
+  const std::size_t count = std::size_t{frame.region_width_px} * frame.region_height_px;
+  for (std::size_t i = 0; i < count; i += 7)
+    best = std::max(best, static_cast<int>(frame.pixels()[i] & 0xff));
+  return best;
+}
+
+/// From the publication of a guest's picture to the publication of the frame that shows it, ms.
+std::vector<double> times_to_light_ms(int runs) {
+  auto ring = client::rig_ring("twin", "guest.left");
+  if (!ring) give_up(ring.error().what);
+  auto writer = ipc::Writer<msg::GuestPicture>::attach(std::move(ring->segment));
+  if (!writer) give_up(writer.error().what);
+  auto frames = stream_of<msg::Projection>("projection.frames");
+  std::vector<double> times_ms;
+  for (int run = 0; run < runs; ++run) {
+    const bool is_bright = run % 2 == 0;
+    auto slot = writer->loan();
+    slot->width_px = slot->height_px = 64;
+    std::fill_n(slot->pixels(), 64 * 64, is_bright ? 0xffffffffu : 0xff000028u);
+    const auto begin_ns = now_ns();
+    writer->publish(std::move(slot));
+    for (const auto until = Deadline::in(2s); !until.passed();) {
+      const auto frame = frames.latest(Deadline::in(100ms));
+      if (!frame || (*frame)->header.published_ns < begin_ns) continue;
+      const auto red = brightest_red(**frame);
+      if (!red || (*red > 150) != is_bright) continue;
+      times_ms.push_back(ns_to_ms((*frame)->header.published_ns - begin_ns));
+      break;
+    }
+    ::usleep(static_cast<useconds_t>(50'000 + 1'700 * (run % 10)));
+  }
+  return times_ms;
+}
+
+/// The frames without light, and all, while the content service is killed.
+struct Kills {
+  int kills = 0, dark = 0, frames = 0;
+};
+
+Kills kill_content(const TwinRig& rig, int kills) {
+  auto frames = stream_of<msg::Projection>("projection.frames");
+  Kills result;
+  while (result.kills < kills) {
+    ::kill(rig.pid_of("content"), SIGKILL);
+    ++result.kills;
+    for (const auto until = Deadline::in(150ms); !until.passed();) {
+      const auto frame = frames.next(Deadline::in(20ms));
+      if (!frame) continue;
+      const auto red = brightest_red(**frame);
+      result.frames += red.has_value();
+      result.dark += red.has_value() && *red < 20;
+    }
+    rig.settle("");
+  }
+  return result;
+}
+
+void measure_frames(const RigFolder& folder, int runs, std::vector<Goal>& goals) {
+  std::vector<double> still_us, moving_us;
+  int still_missed = 0, moving_missed = 0;
+  fmt::print("the projector's frame, 8 s each, us          p50    p99  missed\n");
+  for (int run = 0; run < runs; ++run)
+    for (const bool is_moving : {false, true}) {
+      const TwinRig rig(folder, settings_with(is_moving ? "waves" : "builtin:atlas"));
+      const auto frames = watch_frames(8);
+      (is_moving ? moving_us : still_us).push_back(median(frames.frame_us));
+      (is_moving ? moving_missed : still_missed) += frames.missed;
+      fmt::print("  {:<38} {:>8.0f} {:>6.0f} {:>7}\n",
+                 is_moving ? "a shader, 640x400 at 60 Hz" : "a still picture",
+                 median(frames.frame_us), percentile(frames.frame_us, 0.99), frames.missed);
+    }
+  goals.push_back({"frame with a moving content, longer by",
+                   100 * (median(moving_us) / median(still_us) - 1), 5, "%"});
+  goals.push_back({"missed refreshes more than with a still one",
+                   static_cast<double>(moving_missed - still_missed), 0, ""});
+}
+
+int run(int runs, const char* goals_file) {
+  const RigFolder folder;
+  std::vector<Goal> goals;
+  measure_frames(folder, runs, goals);
+  {
+    const TwinRig rig(folder, settings_with("builtin:atlas"));
+    std::vector<double> first_ms, again_ms;
+    {
+      auto commands = command_writer();
+      for (const auto* look : {"lava", "tiger", "galaxy", "xray", "clock", "circuit"})
+        first_ms.push_back(change_ms(commands, look));
+      for (int i = 0; i < 10; ++i)
+        again_ms.push_back(change_ms(commands, i % 2 ? "builtin:checker" : "builtin:skeleton"));
+      change_ms(commands, "program:left");
+    }
+    fmt::print("change of a look, median of {}: {:.0f} ms; of a pattern: {:.0f} ms\n",
+               first_ms.size(), median(first_ms), median(again_ms));
+    goals.push_back({"first picture of a look after its command", median(first_ms), 100, "ms"});
+    ::usleep(500'000);
+    const auto light_ms = times_to_light_ms(60);
+    goals.push_back({"content to light, median of " + std::to_string(light_ms.size()),
+                     median(light_ms), 1000 / kContent_hz + 1000 / kRefresh_hz, "ms"});
+  }
+  {
+    const TwinRig rig(folder, settings_with("waves"));
+    const auto kills = kill_content(rig, 100);
+    fmt::print("content killed {} times: {} of {} frames dark\n", kills.kills, kills.dark,
+               kills.frames);
+    goals.push_back(
+        {"dark frames while content was killed", static_cast<double>(kills.dark), 0, ""});
+  }
+  print_goals(goals);
+  return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace handcast::bench
+
+int main(int argc, char** argv) {
+  int runs = 3;
+  const char* goals_file = nullptr;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    if (std::string_view(argv[i]) == "--goals") goals_file = argv[i + 1];
+    if (std::string_view(argv[i]) == "--runs") runs = std::max(1, std::atoi(argv[i + 1]));
+  }
+  return handcast::bench::run(runs, goals_file);
+}
