@@ -97,7 +97,7 @@ TEST_F(IsfFiles, AllWaysToReadAPixel) {
         "texture(inputImage, isf_FragNormCoord)", "texture2DRect(inputImage, gl_FragCoord.xy)",
         "IMG_PIXEL(inputImage, isf_FragNormCoord * IMG_SIZE(inputImage))",
         "IMG_PIXEL(inputImage, isf_FragNormCoord * _inputImage_imgSize)",
-        "IMG_PIXEL(inputImage, isf_FragNormCoord * _inputImage_imgRect.zw)",
+        "IMG_NORM_PIXEL(inputImage, isf_FragNormCoord * _inputImage_imgRect.zw)",
         "texelFetch(inputImage, ivec2(gl_FragCoord.xy), 0)"}) {
     const auto source = isf(kFilter, std::string("void main() { gl_FragColor = ") + way + "; }");
     ASSERT_TRUE(source) << way;
