@@ -164,7 +164,8 @@ Result<void> Trial::open() {
   if (!resolved) return tl::make_unexpected(resolved.error());
   const auto written = config::parse_content(*resolved);
   if (!written) return tl::make_unexpected(written.error());
-  if (written->size() == 1) lone_ = fmt::format("{}:{}: ", (*written)[0].kind, (*written)[0].what);
+  if (written->size() == 1)
+    lone_ = config::print_content({{(*written)[0].kind, (*written)[0].what, {}}}) + ": ";
   auto hands = MovingHands::load();
   if (!hands) return tl::make_unexpected(hands.error());
   hands_.emplace(std::move(*hands));
