@@ -252,13 +252,16 @@ Result<IsfHead> read_head(const Json& json) {
 
 /// The first comment with a brace.
 Result<std::string_view> json_part(std::string_view text) {
-  const auto begin = text.find("/*");
-  const auto brace = begin == text.npos ? begin : text.find_first_not_of(" \t\r\n*", begin + 2);
-  if (brace == text.npos || text[brace] != '{')
-    return bad_head("it is no ISF file: it does not begin with a comment in JSON, /*{ ... }*/");
-  const auto end = text.find("*/", brace);
-  if (end == text.npos) return bad_head("the comment at its beginning has no end, */");
-  return text.substr(brace, text.rfind('}', end) + 1 - brace);
+  for (auto begin = text.find("/*"); begin != text.npos; begin = text.find("/*", begin)) {
+    const auto brace = text.find_first_not_of(" \t\r\n*", begin + 2),
+               end = text.find("*/", begin + 2);
+    const bool is_head = brace != text.npos && text[brace] == '{';
+    if (is_head && end == text.npos) return bad_head("the comment at its beginning has no end, */");
+    if (is_head) return text.substr(brace, text.rfind('}', end) + 1 - brace);
+    if (end == text.npos) break;
+    begin = end + 2;
+  }
+  return bad_head("it is no ISF file: it has no comment in JSON, /*{ ... }*/, at its beginning");
 }
 
 }  // namespace

@@ -17,13 +17,16 @@ namespace {
 /// one, in which more words are free; one with more functions.
 constexpr std::array<int, 3> kVersions{330, 130, 410};
 
+/// Lists in braces, and constants that are computed when a function is called.
+const std::string kMoreGlsl = "#extension GL_ARB_shading_language_420pack : enable\n";
+
 /// The numbers of the texts in a driver's messages.
 constexpr int kUserText = 0, kOwnText = 1, kCommonText = 2;
 
 std::string assembled(const UserStage& stage, int version) {
   // Before GLSL 3.30, "#line N" numbers the line after the next one.
   const int first = version >= 330 ? 1 : 0;
-  std::string extensions = stage.glsl.extensions, common;
+  std::string extensions = kMoreGlsl + stage.glsl.extensions, common;
   if (stage.common) {
     extensions += stage.common->glsl.extensions;
     common = fmt::format("#line {} {}\n{}\n", first, kCommonText, stage.common->glsl.text);

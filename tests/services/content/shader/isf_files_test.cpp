@@ -208,6 +208,7 @@ TEST_F(IsfFiles, LineEndsAndSignsOfOtherSystems) {
 
 TEST_F(IsfFiles, TextsBeforeTheHeadAndSlopInIt) {
   const auto source = opened("isf", "sloppy.fs", R"(// Saved by somebody
+/* under some licence */
 /*
 {
   "DESCRIPTION": "two
@@ -235,6 +236,19 @@ TEST_F(IsfFiles, MacrosAndOutputsOfEachVersion) {
                        "void main() { gl_FragColor = vec4(1, 0, 0, 1); if (isf_FragNormCoord.x >= "
                        "0.0) return; gl_FragColor = vec4(0); }")),
             kRed);
+}
+
+TEST_F(IsfFiles, LaterAndLaxerGlsl) {
+  for (const auto* body :
+       {"float a[2] = {1.0, 0.0}; gl_FragColor = vec4(a[0], 0, 0, 1);",
+        "const float t = TIME + 1.0; gl_FragColor = vec4(t, 0, 0, 1);",
+        "int k = 1; vec2 v = vec2(1, 0) * k; gl_FragColor = vec4(v, k - 1, k);",
+        "float c = 1.; bool b = bool(k); gl_FragColor = vec4(b ? c : 0., FRAMEINDEX & 0, 0, 1);"})
+    EXPECT_EQ(colour(isf("", std::string("int k = 1;\nfloat round(float x) { return x; }\n"
+                                         "float twice = TIME * 2.0;\nvoid main() { ") +
+                                 body + " }")),
+              kRed)
+        << body;
 }
 
 TEST_F(IsfFiles, WhatIsDiscardedIsTransparent) {

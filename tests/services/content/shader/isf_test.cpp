@@ -20,8 +20,8 @@ TEST_F(Isf, RowZeroIsTheTop) {
 }
 
 TEST_F(Isf, PicturesArePremultiplied) {
-  EXPECT_EQ(colour(isf("", "void main() { gl_FragColor = vec4(1.0, 0.5, 0.0, 0.5); }")),
-            0x80004080u);
+  EXPECT_EQ(colour(isf("", "void main() { gl_FragColor = vec4(1.0, 0.5, 0.25, 0.5); }")),
+            0x80204080u);
 }
 
 TEST_F(Isf, WhatIsNotFiniteIsZero) {
