@@ -38,8 +38,8 @@ class LightTest : public LookStage {
     const auto& hand = both_[0];
     std::vector<Place> all;
     for (const auto& texel : SurfaceMap(*hand.mesh, kWidth, kHeight).texels())
-      all.push_back({texel.index, texel.of(hand.positions_m),
-                     glm::normalize(texel.of(hand.normals))});
+      all.push_back(
+          {texel.index, texel.of(hand.positions_m), glm::normalize(texel.of(hand.normals))});
     return all;
   }
   /// The light on a picture of one colour, 0..1, of a channel.
@@ -108,8 +108,8 @@ TEST_F(LightTest, AFistShadowsThePalmAndAnOpenHandDoesNot) {
   const auto light_in_the_palm = [&](double seconds) {
     const auto& hand = pose("fist", seconds)[0];
     // Light from in front of the palm.
-    for (const auto& [name, value] : {std::pair{"x", hand.palm_normal.x},
-                                      {"y", hand.palm_normal.y}, {"z", hand.palm_normal.z}})
+    for (const auto& [name, value] :
+         {std::pair{"x", hand.palm_normal.x}, {"y", hand.palm_normal.y}, {"z", hand.palm_normal.z}})
       set({{name, std::to_string(value)}});
     set({{"shadows", "0"}});
     const auto without = lit();
@@ -143,10 +143,14 @@ TEST_F(LightTest, EvennessDimsWhatFacesTheProjector) {
   const auto levels = lit();
   const auto palm = both_[0].joints_m[0];
   for (const auto& place : places()) {
-    const double seen = glm::dot(place.normal, glm::normalize(-place.at_m)) *
-                        glm::dot(palm, palm) / glm::dot(place.at_m, place.at_m);
-    if (seen > 0.55) { ASSERT_NEAR(levels[place.index] * seen, 0.5, 0.01); }
-    if (seen < 0.45) { ASSERT_EQ(levels[place.index], 1); }
+    const double seen = glm::dot(place.normal, glm::normalize(-place.at_m)) * glm::dot(palm, palm) /
+                        glm::dot(place.at_m, place.at_m);
+    if (seen > 0.55) {
+      ASSERT_NEAR(levels[place.index] * seen, 0.5, 0.01);
+    }
+    if (seen < 0.45) {
+      ASSERT_EQ(levels[place.index], 1);
+    }
   }
 }
 

@@ -29,11 +29,14 @@ std::string accusing(const std::string& name) {
   const auto at = text.find("void main()");
   EXPECT_NE(at, text.npos) << name;
   text.replace(at, 11, "void look()");
-  return text + "\nbool is_bad(vec4 v) { return any(isnan(v)) || any(isinf(v)); }\n"
-                "void main() {\n  look();\n  bool bad = is_bad(gl_FragColor);\n"
-                "  if (PASSINDEX < " + last + " && bad) gl_FragColor = vec4(1.0e18);\n"
-                "  if (PASSINDEX == " + last + " && (bad || " + sums +
-         " > 1.0e17)) gl_FragColor = vec4(1.0, 0.0, 1.0, 1.0);\n}\n";
+  return text +
+         "\nbool is_bad(vec4 v) { return any(isnan(v)) || any(isinf(v)); }\n"
+         "void main() {\n  look();\n  bool bad = is_bad(gl_FragColor);\n"
+         "  if (PASSINDEX < " +
+         last +
+         " && bad) gl_FragColor = vec4(1.0e18);\n"
+         "  if (PASSINDEX == " +
+         last + " && (bad || " + sums + " > 1.0e17)) gl_FragColor = vec4(1.0, 0.0, 1.0, 1.0);\n}\n";
 }
 
 class LooksTest : public LookStage {
@@ -80,9 +83,7 @@ class LooksTest : public LookStage {
   std::uint64_t frame_ = 0;
 };
 
-TEST_F(LooksTest, ThereAreTwelveAndMore) {
-  EXPECT_GE(look_names().size(), 12u);
-}
+TEST_F(LooksTest, ThereAreTwelveAndMore) { EXPECT_GE(look_names().size(), 12u); }
 
 TEST_F(LooksTest, AllAreDrawnAndMoveOnBothHands) {
   for (const auto& name : look_names())
