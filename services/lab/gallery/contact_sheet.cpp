@@ -22,11 +22,8 @@ void letter(renderer::Texture& sheet, const std::string& name, int middle, int t
     }
 }
 
-/// A level with its lower three bits rounded by a pattern of 2 x 2.
-std::uint32_t coarse(std::uint32_t level, int x, int y) {
-  constexpr std::uint32_t kPattern[2][2] = {{1, 5}, {7, 3}};
-  return std::min(255u, level + kPattern[y & 1][x & 1]) & 0xf8u;
-}
+/// A level of 5 bits.
+std::uint32_t coarse(std::uint32_t level) { return std::min(255u, level + 4u) & 0xf8u; }
 
 }  // namespace
 
@@ -45,9 +42,9 @@ renderer::Texture ContactSheet::drawn() const {
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
         const auto pixel = picture.at(x, y);
-        sheet.at(left + x, top + y) = 0xff000000u | coarse(pixel & 0xff, x, y) |
-                                      coarse(pixel >> 8 & 0xff, x, y) << 8 |
-                                      coarse(pixel >> 16 & 0xff, x, y) << 16;
+        sheet.at(left + x, top + y) = 0xff000000u | coarse(pixel & 0xff) |
+                                      coarse(pixel >> 8 & 0xff) << 8 |
+                                      coarse(pixel >> 16 & 0xff) << 16;
       }
     letter(sheet, cells_[static_cast<std::size_t>(i)].name, left + width / 2, top + height + 2);
   }

@@ -13,7 +13,7 @@ class ContactSheet {
   /// Adds a picture, all of one size.
   void add(const std::string& name, const renderer::Texture& picture);
   bool empty() const { return cells_.empty(); }
-  /// The sheet: at most four in a row. Colours have 5 bits, dithered, so that a PNG file is small.
+  /// The sheet: at most four in a row. Levels have 5 bits, so that a PNG file is small.
   renderer::Texture drawn() const;
 
  private:
