@@ -23,7 +23,7 @@ float disc(float distance_mm, float radius) { return 1.0 - smoothstep(radius - 0
 float petal(vec2 p, float base, float tip, float w) {
   float t = clamp((p.y - base) / (tip - base), 0.0, 1.0);
   float outline = w * pow(sin(kPi * pow(t, 0.8)), 0.8);
-  float over = max(max(base - p.y, p.y - tip), 0.0);
+  float over = max(base - p.y, p.y - tip);
   return max(abs(p.x) - outline, over);
 }
 
@@ -79,7 +79,7 @@ float finger(float s, float d, float length_mm, float half_width) {
     vec2 leaf = vec2(s - 8.0 * i - 1.0, way * (d - 1.5 * sin(2.0 * kPi * (8.0 * i + 4.0) / 16.0)));
     leaf = vec2(0.6 * leaf.x - 0.8 * leaf.y, 0.8 * leaf.x + 0.6 * leaf.y).yx;
     float shape = petal(leaf.yx, 0.6, 7.2, 1.5);
-    ink = max(ink, disc(max(shape, -9.0), 0.0) * (x < half_width ? 1.0 : 0.0));
+    ink = max(ink, disc(shape, 0.0) * (x < half_width ? 1.0 : 0.0));
   }
   return ink;
 }

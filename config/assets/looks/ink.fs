@@ -67,9 +67,7 @@ void main() {
   }
   vec4 it = texture(fluid, isf_FragNormCoord);
   vec4 place = texelFetch(hand_rest, ivec2(gl_FragCoord.xy), 0);
-  vec2 step = 1.5 / RENDERSIZE;
-  float right = dot(texture(fluid, isf_FragNormCoord + vec2(step.x, 0.0)).rg, vec2(1.0)), up = dot(texture(fluid, isf_FragNormCoord + vec2(0.0, step.y)).rg, vec2(1.0));
-  float here = it.r + it.g, slope = length(vec2(right, up) - here);
+  float here = it.r + it.g, slope = 1.5 * length(vec2(dFdx(here), dFdy(here)));
   vec2 dense = smoothstep(vec2(0.03), vec2(0.75), it.rg);
   vec3 light = first.rgb * dense.r * 1.05 + second.rgb * dense.g * 1.05;
   light += mix(first.rgb, second.rgb, it.g / (here + 0.01)) * min(1.0, slope * 7.0) * 0.9;

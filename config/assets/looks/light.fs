@@ -23,7 +23,7 @@
     {"NAME": "evenness", "LABEL": "Even brightness", "TYPE": "float", "DEFAULT": 0.0, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "skeleton", "LABEL": "Bones", "TYPE": "float", "DEFAULT": 0.0, "MIN": 0.0, "MAX": 1.0}
   ],
-  "PASSES": [{"TARGET": "shade", "WIDTH": "$WIDTH/2", "HEIGHT": "$HEIGHT/2"}, {}]
+  "PASSES": [{"TARGET": "shade", "WIDTH": "$WIDTH/4", "HEIGHT": "$HEIGHT/4"}, {}]
 }*/
 // All in camera space: x to the right, y down, z forward, m. The light is directional (x, y, z is
 // the direction to it), a point (x, y, z is its place), the projector (taken to stand at the
@@ -62,7 +62,7 @@ float shadow_of(vec3 from, vec3 ray, vec3 a, vec3 b, float radius) {
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   if (PASSINDEX == 0) {
-    ivec2 full = min(2 * texel + 1, textureSize(hand_position, 0) - 1);
+    ivec2 full = min(4 * texel + 2, textureSize(hand_position, 0) - 1);
     vec3 at = texelFetch(hand_position, full, 0).xyz, normal = texelFetch(hand_surface_normal, full, 0).xyz;
     int own = int(texelFetch(hand_bone, full, 0).x + 0.5);
     vec3 ray = to_light(at);

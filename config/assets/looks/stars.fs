@@ -9,9 +9,9 @@
     {"NAME": "figures", "LABEL": "Constellations", "TYPE": "float", "DEFAULT": 1.0, "MIN": 0.0, "MAX": 1.5},
     {"NAME": "nebula", "LABEL": "Nebula", "TYPE": "color", "DEFAULT": [0.22, 0.14, 0.75, 1.0]}
   ],
-  "PASSES": [{"TARGET": "figure", "ONCE": true}, {}]
+  "PASSES": [{"TARGET": "figure", "ONCE": true}, {"TARGET": "sky", "WIDTH": "$WIDTH/4", "HEIGHT": "$HEIGHT/4"}, {}]
 }*/
-// figure: r: lines of the constellations, g: their stars, b: number of the star, a: 1 on the hand.
+// sky: the nebula. figure: r: lines of the constellations, g: their stars, b: number of the star, a: 1 on the hand.
 
 float hash(vec2 p) {
   uvec2 q = uvec2(ivec2(p)) * uvec2(1597334673u, 3812015801u);
@@ -67,14 +67,21 @@ void main() {
     gl_FragColor = vec4(lines * on, glow * on, number, on);
     return;
   }
+  vec2 move = vec2(drift, 0.35 * drift) * TIME;
+  if (PASSINDEX == 1) {
+    vec3 here = texelFetch(hand_position, min(4 * texel + 2, textureSize(hand_position, 0) - 1), 0).xyz;
+    vec2 deep = 600.0 * here.xy / max(here.z, 0.1);
+    float cloud = noise(mat2(0.6, 0.8, -0.8, 0.6) * (0.022 * deep) + 0.01 * move) * 0.65 + noise(mat2(0.8, -0.6, 0.6, 0.8) * (0.06 * deep) - 0.012 * move) * 0.35;
+    gl_FragColor.rgb = nebula.rgb * smoothstep(0.38, 0.85, cloud) * 0.75 + vec3(0.5, 0.06, 0.32) * smoothstep(0.55, 0.9, noise(0.035 * deep + 40.0)) * 0.55;
+    gl_FragColor.a = 1.0;
+    return;
+  }
   vec4 it = texelFetch(figure, texel, 0);
   vec3 at = texelFetch(hand_position, texel, 0).xyz;
   vec2 near = 1000.0 * at.xy, far = 600.0 * at.xy / max(at.z, 0.1);
-  vec2 move = vec2(drift, 0.35 * drift) * TIME;
   vec3 light = stars(far + 0.3 * move, 6.5, 0.85, density, 1.0) * 0.7 + stars(mix(near, far, 0.5) + 0.7 * move, 11.0, 1.3, density, 20.0) * 0.9;
   light += stars(near + 1.3 * move, 21.0, 2.1, density, 50.0);
-  float cloud = noise(mat2(0.6, 0.8, -0.8, 0.6) * (0.022 * far) + 0.01 * move) * 0.65 + noise(mat2(0.8, -0.6, 0.6, 0.8) * (0.06 * far) - 0.012 * move) * 0.35;
-  light += nebula.rgb * smoothstep(0.38, 0.85, cloud) * 0.75 + vec3(0.5, 0.06, 0.32) * smoothstep(0.55, 0.9, noise(0.035 * far + 40.0)) * 0.55;
+  light += texture(sky, isf_FragNormCoord).rgb;
   float beat = 0.8 + 0.2 * sin(2.0 * TIME + 40.0 * it.b);
   light += figures * (vec3(0.35, 0.6, 1.0) * it.r * 0.75 + vec3(1.0, 0.95, 0.82) * it.g * beat);
   // The stream to the other hand, between hands that are less than half a metre apart.
@@ -84,6 +91,6 @@ void main() {
   float s = 1000.0 * dot(at - hand_joint[0], along), d = 1000.0 * dot(at - hand_joint[0], side);
   float lean = smoothstep(-30.0, 70.0, s) * near_by;
   vec2 stream = vec2(s - 150.0 * TIME, d + 6.0 * sin(0.03 * s - 2.0 * TIME));
-  light += lean * (stars(stream, 8.0, 1.4, 0.9, 70.0) * 1.2 + vec3(0.30, 0.55, 1.0) * 0.4 * noise(vec2(0.03, 0.10) * stream));
+  light += lean * (stars(stream, 8.0, 1.4, 0.9, 70.0) * 1.2 + vec3(0.30, 0.55, 1.0) * 0.14);
   gl_FragColor = vec4(light * it.a, 1.0);
 }

@@ -37,7 +37,7 @@ float pebble(vec3 p, vec3 at, vec2 size, float turn) {
 
 // An edge that is brighter than the inside, as cortical bone is.
 float cortex(float inside) {
-  return inside <= 0.0 ? 0.0 : smoothstep(0.0, 0.30, inside) * (0.58 + 0.50 * exp(-pow((inside - 0.32) / 0.20, 2.0)));
+  return inside <= 0.0 ? 0.0 : smoothstep(0.0, 0.30, inside) * (0.62 + 0.46 * exp(-pow((inside - 0.32) / 0.20, 2.0)));
 }
 
 float wrist(vec3 p) {
@@ -82,7 +82,7 @@ void main() {
       return;
     }
     vec3 place = texelFetch(hand_rest, texel, 0).xyz;
-    float soft = 1.0 - smoothstep(0.0, 20.0, near.y);
+    float soft = 1.0 - smoothstep(0.0, 26.0, near.y);
     gl_FragColor = vec4(cortex(skeleton(place)), 0.3 + 0.7 * soft * soft, clamp(0.5 - place.z / 400.0, 0.0, 1.0), 1.0);
     return;
   }
@@ -90,7 +90,7 @@ void main() {
   float arm = smoothstep(0.26, 0.40, it.b);
   float beam = fract(sweep * TIME / 60.0) * 1.5 - 0.1, behind = beam - it.b;
   float lit = exp(-1500.0 * behind * behind) + (behind > 0.0 ? 0.45 * exp(-8.0 * behind) : 0.0);
-  float body = flesh * it.g * arm * (0.55 + 1.1 * lit);
+  float body = flesh * it.g * arm * (1.05 + 1.3 * lit);
   float hard = it.r * arm * (0.95 + 0.45 * lit);
   vec3 deep = tint.rgb * tint.rgb, pale = mix(tint.rgb, vec3(1.0), 0.10 + 0.65 * it.r * it.r);
   vec3 light = deep * body * (1.0 - 0.7 * it.r) + pale * hard;

@@ -9,12 +9,15 @@
 
 #include "config/rig.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/input_file.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/content/hands.hpp"
 #include "services/content/looks_folder.hpp"
 #include "services/content/mixer.hpp"
+#include "services/lab/gallery/contact_sheet.hpp"
 #include "services/lab/gallery/hand_stage.hpp"
+#include "services/lab/gallery/page.hpp"
 #include "services/lab/twin/twin.hpp"
 
 namespace handcast::gallery {
@@ -32,16 +35,6 @@ std::string file_name_of(const std::string& content) {
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
   return name.substr(0, 60) + ".png";
-}
-
-std::string escaped(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    const bool is_plain = code >= 0x20 && c != '<' && c != '>' && c != '&' && c != '"';
-    html += is_plain ? std::string(1, c) : fmt::format("&#{};", code);
-  }
-  return html;
 }
 
 /// The part of a picture within `from`, in another size, each pixel the mean of what it covers.
@@ -67,30 +60,64 @@ void shrink_into(renderer::View<const std::uint32_t> picture, const renderer::Re
     }
 }
 
-constexpr std::string_view kHead = R"(<!doctype html>
-<html lang="en"><meta charset="utf-8"><title>handcast: looks</title>
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<style>
-body { background: #0b0d10; color: #dfe3e8; font: 15px/1.5 system-ui, sans-serif; margin: 2rem auto; max-width: 1180px; padding: 0 1rem; }
-h1 { font-weight: 500; } p { color: #98a2ad; }
-main { display: grid; grid-template-columns: repeat(auto-fill, minmax(320px, 1fr)); gap: 1.2rem; }
-figure { margin: 0; background: #14181d; border-radius: 8px; overflow: hidden; }
-figcaption { padding: .6rem .9rem; font-family: ui-monospace, monospace; font-size: .85rem; overflow-wrap: anywhere; }
-.strip { margin: 0 auto; background-repeat: no-repeat; }
-@media (prefers-reduced-motion: reduce) { .strip { animation: none !important; } }
-</style>
-<h1>Looks</h1>
-<p>Drawn by handcast on the digital twin's hands. <code>handcast content NAME</code> puts one on the hands of a running rig.</p>
-<main>
-)";
+/// What is shown, and how a person reads of it.
+struct Shown {
+  std::string below;       ///< the content at first, a chain
+  std::string transition;  ///< to kSecond; "": none
+  std::string sentence;
+  std::vector<content::Parameter> parameters;
+};
+constexpr std::string_view kUnderFilters = "tiger", kFirst = "xray", kSecond = "lava";
+
+/// What DESCRIPTION in the head of a look says.
+std::string sentence_of(const std::string& look) {
+  const auto text = read_input(content::looks_folder() / (look + ".fs"), 1 << 20);
+  constexpr std::string_view kKey = "\"DESCRIPTION\": \"";
+  const auto at = text ? text->find(kKey) : std::string::npos;
+  if (at == std::string::npos) return "";
+  const auto begin = at + kKey.size();
+  return text->substr(begin, text->find('"', begin) - begin);
+}
+
+/// A filter is shown over a look, a transition between two.
+Result<Shown> shown_as(const std::string& content, const config::ContentChain& chain,
+                       const content::Opening& like) {
+  Shown shown{.below = content, .transition = {}, .sentence = {}, .parameters = {}};
+  if (chain.size() != 1) return shown;
+  auto opening = like;
+  opening.element = chain[0];
+  const auto source = content::open_source(opening);
+  if (!source) return fail_in(content, source.error());
+  const auto parameters = (*source)->parameters();
+  shown.parameters.assign(parameters.begin(), parameters.end());
+  if (chain[0].kind == "look") shown.sentence = sentence_of(chain[0].what);
+  if ((*source)->inputs() == 1) shown.below = fmt::format("{} | {}", kUnderFilters, content);
+  if ((*source)->inputs() == 2) {
+    shown.below = kFirst;
+    shown.transition = content;
+  }
+  return shown;
+}
+
+/// How much light there is in a picture.
+std::uint64_t light_in(renderer::View<const std::uint32_t> picture) {
+  std::uint64_t sum = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto pixel = picture.at(x, y);
+      sum += std::max({pixel & 0xff, pixel >> 8 & 0xff, pixel >> 16 & 0xff});
+    }
+  return sum;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
 
 }  // namespace
-
-/// One content of the page.
-struct Gallery::Entry {
-  std::string title, file;
-  int width_px, height_px;
-};
 
 struct Gallery::Parts {
   Wanted wanted;
@@ -102,7 +129,9 @@ struct Gallery::Parts {
   std::uint64_t next_sample = 0;
   glm::ivec2 size_px{0};                ///< of what is kept of a picture
   std::optional<glm::dvec2> middle_px;  ///< of it, smoothed
+  renderer::Rect last_part;
   std::vector<Entry> entries;
+  ContactSheet sheet;
 
   /// The hands at a time of the motion. Times go on; rewind() begins again.
   content::BothHands hands_at(std::int64_t time_ns) {
@@ -126,6 +155,10 @@ struct Gallery::Parts {
   }
   void find_size();
   renderer::Rect followed();
+  content::Opening like(msg::Side side) const;
+  Result<std::vector<content::Mixer>> open(const Shown& shown);
+  Result<void> change(std::vector<content::Mixer>& mixers, const std::string& transition) const;
+  void keep(renderer::View<const std::uint32_t> picture, int index, renderer::Texture& strip);
 };
 
 /// The size of a picture: the largest that a hand has in the motion, and a margin.
@@ -145,9 +178,15 @@ renderer::Rect Gallery::Parts::followed() {
   const auto& region = stage.region();
   const glm::dvec2 middle(0.5 * (region.x0 + region.x1), 0.5 * (region.y0 + region.y1));
   constexpr double kShare = 0.2;
-  if (!region.empty()) middle_px = middle_px ? glm::mix(*middle_px, middle, kShare) : middle;
+  const auto room =
+      glm::max(glm::dvec2(size_px - glm::ivec2(region.width(), region.height())), 0.) / 2.;
+  if (!region.empty())
+    middle_px = middle_px
+                    ? glm::clamp(glm::mix(*middle_px, middle, kShare), middle - room, middle + room)
+                    : middle;
   const glm::ivec2 first(middle_px.value_or(glm::dvec2(size_px) / 2.) - glm::dvec2(size_px) / 2.);
-  return {first.x, first.y, first.x + size_px.x, first.y + size_px.y};
+  last_part = {first.x, first.y, first.x + size_px.x, first.y + size_px.y};
+  return last_part;
 }
 
 Result<Gallery> Gallery::open(const Wanted& wanted) {
@@ -179,71 +218,116 @@ Gallery::Gallery(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Gallery::Gallery(Gallery&&) noexcept = default;
 Gallery::~Gallery() = default;
 
+content::Opening Gallery::Parts::like(msg::Side side) const {
+  content::Opening like;
+  like.width = rig.content.width_px;
+  like.height = rig.content.height_px;
+  like.meshes = hands.meshes();
+  like.side = side;
+  return like;
+}
+
+/// The content of each hand.
+Result<std::vector<content::Mixer>> Gallery::Parts::open(const Shown& shown) {
+  const auto chain = config::parse_content(shown.below);
+  if (!chain) return tl::make_unexpected(chain.error());
+  std::vector<content::Mixer> mixers;
+  for (const auto side : {msg::Side::left, msg::Side::right}) {
+    auto opened = content::Chain::open(*chain, like(side));
+    if (!opened) return tl::make_unexpected(opened.error());
+    mixers.emplace_back(like(side));
+    if (auto set = mixers.back().change(std::move(*opened), "cut", 0); !set)
+      return tl::make_unexpected(set.error());
+  }
+  return mixers;
+}
+
+/// Begins the transition to the second look.
+Result<void> Gallery::Parts::change(std::vector<content::Mixer>& mixers,
+                                    const std::string& transition) const {
+  const auto chain = config::parse_content(kSecond);
+  if (!chain) return tl::make_unexpected(chain.error());
+  for (std::size_t i = 0; i < mixers.size(); ++i) {
+    auto opened = content::Chain::open(*chain, like(i == 0 ? msg::Side::left : msg::Side::right));
+    if (!opened) return tl::make_unexpected(opened.error());
+    constexpr double kShare = 0.7;
+    auto set = mixers[i].change(std::move(*opened), transition, kShare * wanted.seconds);
+    if (!set) return set;
+  }
+  return {};
+}
+
+/// Puts a picture into the strip.
+void Gallery::Parts::keep(renderer::View<const std::uint32_t> picture, int index,
+                          renderer::Texture& strip) {
+  const auto part = followed();
+  if (index < 0) return;
+  renderer::View<std::uint32_t> out = strip.view();
+  out.width = wanted.width_px;
+  out.data += out.width * index;
+  shrink_into(picture, part, out);
+}
+
 Result<double> Gallery::show(const std::string& content) {
   Parts& all = *parts_;
   const auto chain = config::parse_content(content);
   if (!chain) return tl::make_unexpected(chain.error());
+  const auto shown = shown_as(content, *chain, all.like(msg::Side::left));
+  if (!shown) return tl::make_unexpected(shown.error());
   all.rewind();
-  std::vector<content::Mixer> mixers;
-  for (const auto side : {msg::Side::left, msg::Side::right}) {
-    content::Opening like;
-    like.width = all.rig.content.width_px;
-    like.height = all.rig.content.height_px;
-    like.meshes = all.hands.meshes();
-    like.side = side;
-    auto opened = content::Chain::open(*chain, like);
-    if (!opened) return tl::make_unexpected(opened.error());
-    mixers.emplace_back(like);
-    if (auto set = mixers.back().change(std::move(*opened), "cut", 0); !set)
-      return tl::make_unexpected(set.error());
-  }
+  auto mixers = all.open(*shown);
+  if (!mixers) return tl::make_unexpected(mixers.error());
   const int width = all.wanted.width_px, height = width * all.size_px.y / all.size_px.x;
-  renderer::Texture strip(width * all.wanted.frames, height);
+  renderer::Texture strip(width * all.wanted.frames, height), best;
+  std::uint64_t most = 0;
   std::vector<double> took_ms;
   int kept = 0;
   for (int step = 0; step < all.steps(); ++step) {
     const auto hands = all.hands_at(all.time_ns(step));
-    for (std::size_t i = 0; i < mixers.size(); ++i) {
+    if (step == kSettling && !shown->transition.empty())
+      if (auto begun = all.change(*mixers, shown->transition); !begun)
+        return tl::make_unexpected(begun.error());
+    for (std::size_t i = 0; i < mixers->size(); ++i) {
       if (!hands[i].is_there) continue;
       const auto begin_ns = now_ns();
-      const auto drawn = mixers[i].draw(hands[i], hands[1 - i], ns_to_seconds(all.time_ns(step)));
+      const auto drawn =
+          (*mixers)[i].draw(hands[i], hands[1 - i], ns_to_seconds(all.time_ns(step)));
       if (!drawn) return tl::make_unexpected(drawn.error());
       took_ms.push_back(ns_to_ms(now_ns() - begin_ns));
     }
-    const auto picture = all.stage.take(hands, {&mixers[0].picture(), &mixers[1].picture()});
-    const auto part = all.followed();
-    if (!all.is_kept(step) || kept == all.wanted.frames) continue;
-    renderer::View<std::uint32_t> out = strip.view();
-    out.data += width * kept++;
-    out.width = width;
-    shrink_into(picture, part, out);
+    const auto picture = all.stage.take(hands, {&(*mixers)[0].picture(), &(*mixers)[1].picture()});
+    const bool is_kept = all.is_kept(step) && kept < all.wanted.frames;
+    all.keep(picture, is_kept ? kept++ : -1, strip);
+    // Of a transition, the sheet has the middle; of all else the brightest of the later pictures.
+    const int at = 100 * (step - kSettling) / (all.steps() - kSettling);
+    const bool is_late = shown->transition.empty() ? at > 35 : at > 28 && at < 40;
+    if (const auto light = light_in(picture); is_late && light > most) {
+      most = light;
+      best = renderer::Texture(width, height);
+      shrink_into(picture, all.last_part, best.view());
+    }
   }
-  const Entry entry{content, file_name_of(content), width, height};
-  const auto written = renderer::write_png(fs::path(all.wanted.folder) / entry.file, strip.view());
-  if (!written) return tl::make_unexpected(written.error());
-  all.entries.push_back(entry);
-  if (took_ms.empty()) return 0.0;
-  std::ranges::nth_element(took_ms, took_ms.begin() + std::ssize(took_ms) / 2);
-  return took_ms[took_ms.size() / 2];
+  if (most > 0) all.sheet.add(content, best);
+  const double median_ms = median(std::move(took_ms));
+  all.entries.push_back({content, shown->sentence, shown->parameters, file_name_of(content), width,
+                         height, median_ms});
+  const auto file = fs::path(all.wanted.folder) / all.entries.back().file;
+  if (auto written = renderer::write_png(file, strip.view()); !written)
+    return tl::make_unexpected(written.error());
+  return median_ms;
 }
 
 Result<fs::path> Gallery::write_page() const {
-  const Parts& all = *parts_;
-  std::string page(kHead);
-  for (std::size_t i = 0; i < all.entries.size(); ++i) {
-    const auto& entry = all.entries[i];
-    page += fmt::format(
-        "<figure><style>@keyframes s{0} {{ to {{ background-position: -{1}px 0; }} }}</style>"
-        "<div class=\"strip\" role=\"img\" aria-label=\"{2}\" style=\"width: {3}px; height: {4}px; "
-        "background-image: url('{5}'); animation: s{0} {6:.1f}s steps({7}) infinite "
-        "alternate\"></div><figcaption>{2}</figcaption></figure>\n",
-        i, entry.width_px * all.wanted.frames, escaped(entry.title), entry.width_px,
-        entry.height_px, entry.file, all.wanted.seconds, all.wanted.frames);
-  }
-  page += "</main></html>\n";
-  const auto file = fs::path(all.wanted.folder) / "index.html";
+  const auto file = fs::path(parts_->wanted.folder) / "index.html";
+  const auto page = page_of(parts_->entries, parts_->wanted.frames, parts_->wanted.seconds);
   if (auto written = write_whole(file, page); !written) return tl::make_unexpected(written.error());
   return file;
+}
+
+Result<void> Gallery::write_sheet(const fs::path& file) const {
+  if (parts_->sheet.empty())
+    return fail(Errc::bad_config, fmt::format("{}: nothing could be shown", file.string()));
+  return renderer::write_png(file, parts_->sheet.drawn().view());
 }
 
 }  // namespace handcast::gallery

@@ -18,7 +18,8 @@ namespace {
 
 const char* const kNotes =
     "SOURCE is written as content.left in a rig file; without one, all looks of handcast.\n"
-    "DIR/index.html shows them; DIR/NAME.png has the pictures of each, side by side.";
+    "A filter is shown over tiger, a transition from xray to lava. DIR/index.html shows all;\n"
+    "DIR/NAME.png has the pictures of each, side by side.";
 
 int complain(const Error& error) {
   fmt::print(stderr, "handcast gallery: {}\n", printable(error.what));
@@ -39,6 +40,9 @@ int write(const Wanted& wanted) {
     std::fflush(stdout);
     if (!shown) code = complain(shown.error());
   }
+  if (!wanted.sheet.empty())
+    if (const auto written = stage->write_sheet(wanted.sheet); !written)
+      return complain(written.error());
   const auto page = stage->write_page();
   if (!page) return complain(page.error());
   fmt::print("{}\n", page->string());
@@ -55,6 +59,7 @@ static int run_verb(int argc, char** argv) {
                    gallery::kNotes);
   line.add("[SOURCE...]", wanted.sources, "What to show");
   line.add("-o, --out DIR", wanted.folder, "The folder of the page; it is created");
+  line.add("--sheet FILE.png", wanted.sheet, "Writes one picture of each, with its name, too");
   line.add("--motion MOTION", wanted.motion, "How the hands move: as twin.motion");
   line.add("--frames N", wanted.frames, "Pictures of each", {1, 200});
   line.add("--seconds S", wanted.seconds, "That they last", {0.1, 60});
