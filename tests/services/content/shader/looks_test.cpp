@@ -99,6 +99,23 @@ TEST_F(LooksTest, AllAreDrawnAndMoveInASquare) {
   for (const auto& name : look_names()) try_out(name, Side::left, 128, 128);
 }
 
+TEST_F(LooksTest, WaterRunsOffWhenTheFingersPointDown) {
+  pose("open_close", 0.1);
+  pictures_.fill(renderer::Texture(160, 100));
+  const auto source = open("water", Side::left, 160, 100);
+  const auto light_in = [](const renderer::Texture& picture) {
+    double sum = 0;
+    for (const auto texel : picture.pixels()) sum += level_of(texel, 1) + level_of(texel, 2);
+    return sum;
+  };
+  both_[0].gravity = {0, 0, 1};
+  const double full = light_in(play(*source, Side::left, 0, 6));
+  both_[0].gravity = {0, 0, -1};
+  EXPECT_LT(light_in(play(*source, Side::left, 6, 18)), 0.5 * full);
+  both_[0].gravity = {0, 0, 1};
+  EXPECT_GT(light_in(play(*source, Side::left, 18, 60)), 0.7 * full);
+}
+
 TEST_F(LooksTest, WithoutAHandAllAreFinite) {
   both_ = Hands::load({}, GesturingHands("show").calibration())->at(GesturingHands::ns(1));
   ASSERT_FALSE(both_[0].is_there);
