@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/content_picture.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/projection.hpp"
@@ -49,6 +50,7 @@ const Role kRoles[] = {
     {"pose", "pose.hands", run<msg::HandPoses>},
     {"landmarks", "landmarks.hands", run<msg::Landmarks>},
     {"projector", "projection.frames", run<msg::Projection>},
+    {"content", "content.left", run<msg::ContentPicture>},
 };
 
 /// The role of handcast-NAME; the camera's for any other name.

@@ -80,7 +80,7 @@ void main() {
     vec3 p = texture(hand_rest, isf_FragNormCoord).xyz;
     float to_tip = min(distance(p, hand_rest_joint[5]), distance(p, hand_rest_joint[10]));
     float pinch = hand_there == 1 ? smoothstep(0.55, 0.95, hand_pinch) * warmth : 0.0;
-    float warm = pinch * exp(-pow(to_tip / (16.0 + 30.0 * clamp(old.b, 0.0, 1.0)), 2.0));
+    float warm = pinch * exp(-pow(to_tip / (24.0 + 36.0 * clamp(old.b, 0.0, 1.0)), 2.0));
     float gone = hand_there == 1 ? wind * max(0.0, hand_speed - 0.35) * 0.9 : 0.0;
     float change = TIMEDELTA * (1.0 / seconds - 2.6 * warm - gone * (0.5 + noise(0.08 * p.xz)));
     float now = clamp(old.r + min(change, 1.2 - old.r), 0.0, 1.2);

@@ -23,12 +23,13 @@
     {"NAME": "evenness", "LABEL": "Even brightness", "TYPE": "float", "DEFAULT": 0.0, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "skeleton", "LABEL": "Bones", "TYPE": "float", "DEFAULT": 0.0, "MIN": 0.0, "MAX": 1.0}
   ],
-  "PASSES": [{"TARGET": "shade", "WIDTH": "$WIDTH/4", "HEIGHT": "$HEIGHT/4"}, {}]
+  "PASSES": [{"TARGET": "bones", "ONCE": true}, {"TARGET": "shade", "WIDTH": "$WIDTH/4", "HEIGHT": "$HEIGHT/4"}, {}]
 }*/
 // All in camera space: x to the right, y down, z forward, m. The light is directional (x, y, z is
 // the direction to it), a point (x, y, z is its place), the projector (taken to stand at the
 // camera), fixed 12 cm in front of the palm, or orbiting it. The viewer stands at the camera.
-// shade: r: how much of the light fingers and hand take away.
+// bones: r: lines along the bones, g: 0 on the arm. shade: r: how much of the light fingers and
+// hand take away.
 
 const float kOrbit_m = 0.16;
 
@@ -62,6 +63,19 @@ float shadow_of(vec3 from, vec3 ray, vec3 a, vec3 b, float radius) {
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   if (PASSINDEX == 0) {
+    int j = int(texelFetch(hand_bone, texel, 0).x + 0.5);
+    vec3 p = texelFetch(hand_rest, texel, 0).xyz;
+    bool is_tip = j == 5 || (j > 5 && j % 5 == 0);
+    int from = j < 2 ? 1 : is_tip ? j - 1 : j, to = j < 2 ? 12 : from + 1;
+    vec3 up = j > 1 && j < 6 ? vec3(hand_side == 0 ? 0.65 : -0.65, 0.75, -0.1) : vec3(0.0, 1.0, 0.0);
+    vec3 begin = hand_rest_joint[from], way = hand_rest_joint[to] - begin;
+    float away = dot(p - begin, normalize(cross(way, up))), s = dot(p - begin, normalize(way));
+    float bone = j < 2 ? 0.0 : 1.0 - smoothstep(0.8, 1.5, abs(away));
+    bone = max(bone, 1.0 - smoothstep(2.4, 3.1, length(vec2(away, min(s, length(way) - s)))));
+    gl_FragColor = vec4(bone, 1.0 - smoothstep(14.0, 42.0, p.z), 0.0, 1.0);
+    return;
+  }
+  if (PASSINDEX == 1) {
     ivec2 full = min(4 * texel + 2, textureSize(hand_position, 0) - 1);
     vec3 at = texelFetch(hand_position, full, 0).xyz, normal = texelFetch(hand_surface_normal, full, 0).xyz;
     int own = int(texelFetch(hand_bone, full, 0).x + 0.5);
@@ -107,26 +121,17 @@ void main() {
   float a = max(roughness * roughness, 0.004), a2 = a * a, spread = nh * nh * (a2 - 1.0) + 1.0;
   float d = a2 / (3.14159265 * spread * spread);
   float v = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-4);
-  vec3 f0 = mix(vec3(0.04), base.rgb, metalness), f = f0 + (1.0 - f0) * pow(max(1.0 - vh, 0.0), 5.0);
-  float arm = 1.0 - smoothstep(14.0, 42.0, texelFetch(hand_rest, texel, 0).z);
+  float slant = max(1.0 - vh, 0.0), grazing = slant * slant, edge = max(1.0 - nv, 0.0);
+  vec3 f0 = mix(vec3(0.04), base.rgb, metalness), f = f0 + (1.0 - f0) * grazing * grazing * slant;
+  vec2 rest = texelFetch(bones, texel, 0).rg;
+  float arm = rest.g;
   vec3 gloss = arm * specular * d * v * f * nl * 3.14159265;
 
   vec3 lamp = strength * (1.0 - shade) * colour.rgb;
   vec3 light = base.rgb * (ambient + (1.0 - metalness) * nl * lamp) + min(gloss, vec3(1.5)) * lamp;
-  light += arm * rim * pow(max(1.0 - nv, 0.0), 3.0) * colour.rgb;
+  light += arm * rim * edge * edge * edge * colour.rgb;
 
-  if (skeleton > 0.0) {
-    int j = int(texelFetch(hand_bone, texel, 0).x + 0.5);
-    vec3 p = texelFetch(hand_rest, texel, 0).xyz;
-    bool is_tip = j == 5 || (j > 5 && j % 5 == 0);
-    int from = j < 2 ? 1 : is_tip ? j - 1 : j, to = j < 2 ? 12 : from + 1;
-    vec3 up = j > 1 && j < 6 ? vec3(hand_side == 0 ? 0.65 : -0.65, 0.75, -0.1) : vec3(0.0, 1.0, 0.0);
-    vec3 begin = hand_rest_joint[from], way = hand_rest_joint[to] - begin;
-    float away = dot(p - begin, normalize(cross(way, up))), s = dot(p - begin, normalize(way));
-    float bone = j < 2 ? 0.0 : 1.0 - smoothstep(0.8, 1.5, abs(away));
-    bone = max(bone, 1.0 - smoothstep(2.4, 3.1, length(vec2(away, min(s, length(way) - s)))));
-    light = mix(light, vec3(0.8, 0.95, 1.0), skeleton * bone);
-  }
+  light = mix(light, vec3(0.8, 0.95, 1.0), skeleton * rest.r);
 
   // Even brightness: skin that gets more of the projector's light is dimmed to what skin gets that
   // faces away by 60 degrees; skin that gets less than that stays as it is.

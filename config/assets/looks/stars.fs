@@ -84,13 +84,13 @@ void main() {
   light += texture(sky, isf_FragNormCoord).rgb;
   float beat = 0.8 + 0.2 * sin(2.0 * TIME + 40.0 * it.b);
   light += figures * (vec3(0.35, 0.6, 1.0) * it.r * 0.75 + vec3(1.0, 0.95, 0.82) * it.g * beat);
-  // The stream to the other hand, between hands that are less than half a metre apart.
+  // The stream to the other hand, between hands that are less than 0.8 m apart.
   vec3 way = other_joint[0] - hand_joint[0];
-  float gap = length(way), near_by = other_there == 1 && hand_there == 1 ? 1.0 - smoothstep(0.25, 0.55, gap) : 0.0;
+  float gap = length(way), near_by = other_there == 1 && hand_there == 1 ? 1.0 - smoothstep(0.35, 0.8, gap) : 0.0;
   vec3 along = way / max(gap, 0.01), side = normalize(vec3(-along.y, along.x, 1e-4));
   float s = 1000.0 * dot(at - hand_joint[0], along), d = 1000.0 * dot(at - hand_joint[0], side);
   float lean = smoothstep(-30.0, 70.0, s) * near_by;
   vec2 stream = vec2(s - 150.0 * TIME, d + 6.0 * sin(0.03 * s - 2.0 * TIME));
-  light += lean * (stars(stream, 8.0, 1.4, 0.9, 70.0) * 1.2 + vec3(0.30, 0.55, 1.0) * 0.14);
+  light += lean * (stars(stream, 7.0, 1.7, 0.9, 70.0) * 1.4 + vec3(0.30, 0.55, 1.0) * 0.20);
   gl_FragColor = vec4(light * it.a, 1.0);
 }

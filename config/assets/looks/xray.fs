@@ -87,7 +87,7 @@ void main() {
     return;
   }
   vec4 it = texelFetch(bones, texel, 0);
-  float arm = smoothstep(0.26, 0.40, it.b);
+  float arm = smoothstep(0.385, 0.445, it.b);
   float beam = fract(sweep * TIME / 60.0) * 1.5 - 0.1, behind = beam - it.b;
   float lit = exp(-1500.0 * behind * behind) + (behind > 0.0 ? 0.45 * exp(-8.0 * behind) : 0.0);
   float body = flesh * it.g * arm * (1.05 + 1.3 * lit);

@@ -27,7 +27,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::vector<std::string> kDaemons{"camera", "pose", "landmarks", "projector"};
+const std::vector<std::string> kDaemons{"camera", "pose", "landmarks", "projector", "content"};
 constexpr auto kObserver = "[observer]\nenabled = true\n",
                kNoObserver = "[observer]\nenabled = false\n";
 constexpr auto kNeverReady = "exec sleep 1000";

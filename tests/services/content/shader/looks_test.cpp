@@ -83,6 +83,28 @@ class LooksTest : public LookStage {
   std::uint64_t frame_ = 0;
 };
 
+TEST_F(LooksTest, APassOfOnceIsDrawnAgainOnlyWhenASettingChanges) {
+  const auto file = scratch_.path() / "once.fs";
+  std::ofstream(file)
+      << R"(/*{"INPUTS": [{"NAME": "blue", "TYPE": "float", "MIN": 0, "MAX": 1, "DEFAULT": 0}],
+    "PASSES": [{"TARGET": "kept", "ONCE": true}, {}]}*/
+    void main() {
+      if (PASSINDEX == 0) gl_FragColor = vec4(TIME, 0.0, blue, 1.0);
+      else gl_FragColor = IMG_THIS_PIXEL(kept) + vec4(0.0, TIME, 0.0, 0.0);
+    })";
+  const auto source = opened(opening_of("isf", file.string(), Side::left, 8, 8));
+  renderer::Texture out(8, 8);
+  const auto at = [&](double time_s) {
+    EXPECT_TRUE(source->draw(moment(Side::left, time_s, frame_++), {}, out));
+    return out.at(4, 4);
+  };
+  EXPECT_EQ(at(0.2), 0xff003333u);
+  EXPECT_EQ(at(0.4), 0xff006633u);
+  ASSERT_TRUE(source->set("blue", "1"));
+  EXPECT_EQ(at(0.6), 0xffff9999u);
+  EXPECT_EQ(at(0.8), 0xffffcc99u);
+}
+
 TEST_F(LooksTest, ThereAreTwelveAndMore) { EXPECT_GE(look_names().size(), 12u); }
 
 TEST_F(LooksTest, AllAreDrawnAndMoveOnBothHands) {
@@ -97,6 +119,23 @@ TEST_F(LooksTest, AllAreDrawnAndMoveOnBothHands) {
 TEST_F(LooksTest, AllAreDrawnAndMoveInASquare) {
   pose("pinch", 1);
   for (const auto& name : look_names()) try_out(name, Side::left, 128, 128);
+}
+
+TEST_F(LooksTest, WaterRunsOffWhenTheFingersPointDown) {
+  pose("open_close", 0.1);
+  pictures_.fill(renderer::Texture(160, 100));
+  const auto source = open("water", Side::left, 160, 100);
+  const auto light_in = [](const renderer::Texture& picture) {
+    double sum = 0;
+    for (const auto texel : picture.pixels()) sum += level_of(texel, 1) + level_of(texel, 2);
+    return sum;
+  };
+  both_[0].gravity = {0, 0, 1};
+  const double full = light_in(play(*source, Side::left, 0, 6));
+  both_[0].gravity = {0, 0, -1};
+  EXPECT_LT(light_in(play(*source, Side::left, 6, 18)), 0.5 * full);
+  both_[0].gravity = {0, 0, 1};
+  EXPECT_GT(light_in(play(*source, Side::left, 18, 60)), 0.7 * full);
 }
 
 TEST_F(LooksTest, WithoutAHandAllAreFinite) {
