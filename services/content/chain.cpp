@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/quote.hpp"
@@ -32,10 +33,15 @@ std::string name_of(const config::ContentElement& element) {
   return element.kind + ":" + element.what;
 }
 
-/// The error with the name of its element, unless its sentence has it.
+/// The error with the name of its element, unless its sentence has it: that of a file begins with
+/// its name, others quote it.
 Error named(const config::ContentElement& element, Error error) {
-  if (element.what.empty() || error.what.find(element.what) == std::string::npos)
-    error.what = config::print_content({element}) + ": " + error.what;
+  const auto& what = element.what;
+  const auto name = std::filesystem::path(what).filename().string();
+  const bool has_it =
+      !what.empty() && (error.what.starts_with(what + ":") || error.what.starts_with(name + ":") ||
+                        error.what.find(quote(what)) != std::string::npos);
+  if (!has_it) error.what = config::print_content({element}) + ": " + error.what;
   return error;
 }
 

@@ -35,6 +35,7 @@ BarePrograms::BarePrograms() {
   for (const auto& [service, stream] : BareRig::streams())
     std::filesystem::create_symlink(bin / "handcast_bare_daemon",
                                     folder() / ("handcast-" + service));
+  std::filesystem::create_symlink(bin / "handcast_bare_daemon", folder() / "handcast-content");
   if (!(std::ofstream(folder() / "rig.toml") << fmt::format("name = \"{}\"\n", kRigName)))
     give_up("no rig file for a bare rig");
 }

@@ -44,7 +44,7 @@ TEST(ContentChain, ChoosesTheKindByTheNameOfTheFile) {
   EXPECT_EQ(one("waves.frag").kind, "shadertoy");
   EXPECT_EQ(one("/dev/video2").kind, "capture");
   EXPECT_EQ(one("rtsp://camera/1").kind, "film");
-  EXPECT_EQ(one("folder.png/name").kind, "look");
+  EXPECT_EQ(one("folder.fs/name").kind, "picture") << "another path may be one";
   EXPECT_EQ(one("builtin:atlas").kind, "pattern");
   EXPECT_EQ(one("builtin:atlas").what, "atlas");
 }

@@ -175,7 +175,7 @@ TEST_F(HandcastC, PointersThatAreNoContentAreErrors) {
 }
 
 TEST_F(HandcastC, APictureLargerThanTheRingIsRefused) {
-  ASSERT_EQ(open(HANDCAST_LEFT, 2000, 2000), HANDCAST_BAD_DATA);  // this test's rings are small
+  ASSERT_EQ(open(HANDCAST_LEFT, 1000, 1000), HANDCAST_BAD_DATA);  // this test's rings are small
   EXPECT_EQ(content_, nullptr);
 }
 
