@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -29,6 +30,9 @@ namespace handcast::bench {
 namespace {
 
 using namespace std::chrono_literals;
+
+/// The supervisor waits longer after each death.
+constexpr int kKills = 20;
 
 constexpr double kRefresh_hz = 120, kContent_hz = 60;
 
@@ -207,7 +211,7 @@ int run(int runs, const char* goals_file) {
   }
   {
     const TwinRig rig(folder, settings_with("waves"));
-    const auto kills = kill_content(rig, 100);
+    const auto kills = kill_content(rig, kKills);
     fmt::print("content killed {} times: {} of {} frames dark\n", kills.kills, kills.dark,
                kills.frames);
     goals.push_back(
@@ -221,6 +225,7 @@ int run(int runs, const char* goals_file) {
 }  // namespace handcast::bench
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   int runs = 3;
   const char* goals_file = nullptr;
   for (int i = 1; i + 1 < argc; i += 2) {
