@@ -92,7 +92,7 @@ bool is_file_kind(std::string_view kind) {
 std::string take_kind(std::string_view& rest) {
   const auto colon = rest.find(':');
   if (colon == rest.npos || rest.find("://") == colon || !is_kind(rest.substr(0, colon))) return {};
-  const std::string kind(rest.substr(0, colon));
+  std::string kind(rest.substr(0, colon));
   rest.remove_prefix(colon + 1);
   skip_spaces(rest);
   return kind;

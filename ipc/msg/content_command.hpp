@@ -58,6 +58,8 @@ struct ShownContent {
   float draw_ms = 0;           ///< what a picture took, smoothed
   std::uint32_t pictures = 0;  ///< that were published
   MessageText<4096> content;   ///< as content.left
+  /// The content of the rig file, which the service begins with.
+  MessageText<4096> settings;
   /// Content that was begun and has drawn no picture yet. If the service dies now, this is why.
   MessageText<4096> trying;
   /// Why the last command was refused, or what is wrong with the content; empty if nothing is.

@@ -21,7 +21,9 @@ HandContent::HandContent(Opening like, config::Content settings,
     : like_(std::move(like)),
       settings_(std::move(settings)),
       mixer_(like_),
-      pictures_(std::move(pictures)) {}
+      pictures_(std::move(pictures)) {
+  state_.settings.set(content_of_settings());
+}
 
 /// Errors: bad_config (the content or the transition is wrong), those of their sources.
 Result<void> HandContent::change(const std::string& content, std::string_view transition,

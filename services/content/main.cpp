@@ -167,10 +167,29 @@ static bool draw(service::Context& context, Contents& all, std::int64_t time_ns)
   return is_new;
 }
 
+/// Opens both contents, but for one that is `known`.
+static Result<void> check_contents(const config::Rig& rig, const content::Hands& hands,
+                                   const std::optional<msg::ContentState>& known = {}) {
+  for (const auto side : {msg::Side::left, msg::Side::right}) {
+    const bool is_left = side == msg::Side::left;
+    const auto& text = is_left ? rig.content.left : rig.content.right;
+    if (known && known->hands[static_cast<std::size_t>(side)].settings.view() == text) continue;
+    const auto* const name = is_left ? "content.left" : "content.right";
+    const auto written = config::parse_content(text);
+    if (!written) return fail_in(name, written.error());
+    const auto chain = content::Chain::open(*written, opening_of(rig, side, hands));
+    if (!chain && chain.error().code == Errc::bad_config) return fail_in(name, chain.error());
+  }
+  return {};
+}
+
 /// Draws the contents of the hands content.rate_hz times a second, until the service ends.
 static void run_content(service::Context& context) {
   const auto& rig = context.rig();
   auto hands = must(content::Hands::load(rig, context.calibration()));
+  // A service that is started again goes on with a content whose files are gone meanwhile.
+  if (const auto checked = check_contents(rig, hands, last_state(context)); !checked)
+    service::give_up(checked.error());
   context.stand_by();
   const auto guests = take_guests(context);
   const auto before = last_state(context);
@@ -212,19 +231,9 @@ static void run_content(service::Context& context) {
   }
 }
 
-/// Opens both contents.
 static Result<void> check_content(const config::Rig& rig, const calib::Calibration& calibration) {
   const auto hands = content::Hands::load(rig, calibration);
-  if (!hands) return tl::make_unexpected(hands.error());
-  for (const auto side : {msg::Side::left, msg::Side::right}) {
-    const auto name = side == msg::Side::left ? "content.left" : "content.right";
-    const auto written =
-        config::parse_content(side == msg::Side::left ? rig.content.left : rig.content.right);
-    if (!written) return fail_in(name, written.error());
-    const auto chain = content::Chain::open(*written, opening_of(rig, side, *hands));
-    if (!chain) return fail_in(name, chain.error());
-  }
-  return {};
+  return hands ? check_contents(rig, *hands) : tl::make_unexpected(hands.error());
 }
 
 int main(int argc, char** argv) {

@@ -78,7 +78,8 @@ TEST_F(Reload, RestartsTheServicesThatReadWhatChangedAndTheLightGoesOn) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.log;
   EXPECT_THAT(
       outcome.output,
-      AllOf(StartsWith("reloaded: camera, landmarks restarted; pose, projector, observer untouched;"
+      AllOf(StartsWith("reloaded: camera, landmarks restarted; pose, projector, content, observer "
+                       "untouched;"
                        " paused for: camera "),
             HasSubstr(", landmarks ")));
   EXPECT_EQ(service("camera")["restarts"], 0) << "it did not die";
@@ -176,7 +177,7 @@ TEST_F(Reload, TheSupervisorsOwnSettingsRestartNobody) {
   const auto before = processes();
   write_rig_with(kCalm, "stop_s = 2\nhistory_s = 5\n" + std::string(kNoObserver));
   EXPECT_EQ(handcast({"reload"}).output,
-            "reloaded: camera, pose, landmarks, projector untouched\n");
+            "reloaded: camera, pose, landmarks, projector, content untouched\n");
   EXPECT_TRUE(changed_since(before).empty());
 }
 
@@ -224,15 +225,15 @@ TEST_F(Reload, SettingsWithWhichOneServiceCannotWorkChangeNothing) {
   write_rig_with("rate_hz = 50", missing);
   const auto failed = handcast({"reload"});
   EXPECT_EQ(failed.exit_code, 100);
-  EXPECT_THAT(failed.log, AllOf(HasSubstr("projector cannot work with the new settings: "),
+  EXPECT_THAT(failed.log, AllOf(HasSubstr("content cannot work with the new settings: "),
                                 HasSubstr("nowhere.png"), HasSubstr("nothing was changed")));
   EXPECT_TRUE(changed_since(before).empty()) << "the camera could have changed, but did not";
   EXPECT_EQ(status()["rings"]["camera.frames"]["wanted_hz"], 60);
 
-  kill(before.at("projector"), SIGKILL);
+  kill(before.at("content"), SIGKILL);
   EXPECT_TRUE(eventually([&] {
-    const auto now = service("projector");
-    return now["pid"] != before.at("projector") && now["state"] == "ready";
+    const auto now = service("content");
+    return now["pid"] != before.at("content") && now["state"] == "ready";
   })) << "it was started with the old settings";
 
   write_rig_with("rate_hz = 50", kNoObserver);

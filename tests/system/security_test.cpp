@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
+#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "tests/system/running_rig.hpp"
@@ -37,9 +38,9 @@ class Security : public SystemTest {
     EXPECT_TRUE(answer);
     std::vector<UniqueFd> given;
     for (std::size_t i = 0; answer && i < answer->descriptors.size(); ++i)
-      if (const auto& name = answer->object["rings"][i]; name != msg::kTestPictures &&
-                                                         name != msg::kGuestPictures[0] &&
-                                                         name != msg::kGuestPictures[1])
+      if (const auto& name = answer->object["rings"][i];
+          name != msg::kTestPictures && name != msg::kContentCommands &&
+          name != msg::kGuestPictures[0] && name != msg::kGuestPictures[1])
         given.push_back(std::move(answer->descriptors[i]));
     return given;
   }
