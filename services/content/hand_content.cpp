@@ -75,13 +75,13 @@ void HandContent::note_fault(const Error& error) {
   log::warning("{}: {}", name_of(like_.side), printable(error.what));
 }
 
-bool HandContent::draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
+void HandContent::draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
                        const CameraView* camera) {
   const std::int64_t begin_ns = now_ns();
   const auto drawn = mixer_.draw(hand, other, ns_to_seconds(time_ns), camera);
   if (!drawn) note_fault(drawn.error());
   const bool is_first = std::exchange(is_new_, false) || state_.pictures == 0;
-  if (!drawn.value_or(false) && !is_first) return false;
+  if (!drawn.value_or(false) && !is_first) return;
   publish(time_ns);
   state_.trying.set("");
   constexpr float kShare = 0.05f;  // of the newest in the mean
@@ -89,7 +89,6 @@ bool HandContent::draw(const HandState& hand, const HandState& other, std::int64
   // The first picture makes what the others use.
   if (!is_first) state_.draw_ms += (state_.draw_ms == 0 ? 1 : kShare) * (took_ms - state_.draw_ms);
   if (is_first) state_.draw_ms = 0;
-  return true;
 }
 
 void HandContent::publish(std::int64_t time_ns) {

@@ -35,9 +35,9 @@ class HandContent {
   /// Changes to the content of a command, if it is for this hand. What cannot be opened becomes the
   /// fault in state(), and the content of before goes on.
   void obey(const msg::ContentCommand& command);
-  /// Draws the picture for a time, CLOCK_MONOTONIC, and publishes it if it is new. Returns whether
-  /// it is. `camera`: see Moment.
-  bool draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
+  /// Draws the picture for a time, CLOCK_MONOTONIC, and publishes it if it is new. `camera`: see
+  /// Moment.
+  void draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
             const CameraView* camera);
 
   /// What the content needs of each moment.

@@ -145,9 +145,8 @@ static std::optional<content::CameraView> view_of(service::Context& context, Con
                              &context.calibration().camera};
 }
 
-/// Draws what is due for both hands. A hand that is not there needs no new pictures. Returns
-/// whether a picture was new.
-static bool draw(service::Context& context, Contents& all, std::int64_t time_ns) {
+/// Draws what is due for both hands. A hand that is not there needs no new pictures.
+static void draw(service::Context& context, Contents& all, std::int64_t time_ns) {
   content::Needs needs;
   for (const auto& worn : all.worn) needs |= worn.needs();
   all.hands.needs_surface(needs.surface || needs.camera);
@@ -155,16 +154,14 @@ static bool draw(service::Context& context, Contents& all, std::int64_t time_ns)
   auto view = view_of(context, all, needs.camera);
   content::BothHands seen;
   if (view) seen = all.hands.seen_at(view->image.origin_ns);
-  bool is_new = false;
   for (std::size_t i = 0; i < all.worn.size(); ++i) {
     if (!hands[i].is_there && !all.worn[i].is_due()) continue;
     if (view) {
       view->hand = &seen[i];
       view->other = &seen[1 - i];
     }
-    is_new |= all.worn[i].draw(hands[i], hands[1 - i], time_ns, view ? &*view : nullptr);
+    all.worn[i].draw(hands[i], hands[1 - i], time_ns, view ? &*view : nullptr);
   }
-  return is_new;
 }
 
 /// Opens both contents, but for one that is `known`.
@@ -211,7 +208,6 @@ static void run_content(service::Context& context) {
   context.ready();
   const auto period_ns = seconds_to_ns(1 / rig.content.rate_hz);
   std::int64_t due_ns = now_ns(), state_ns = due_ns;
-  std::uint64_t pictures = 0;
   while (context.running()) {
     // A command is obeyed at once.
     std::vector<msg::ContentCommand> commands;
@@ -221,9 +217,7 @@ static void run_content(service::Context& context) {
     const std::int64_t begin_ns = now_ns();
     if (begin_ns < due_ns && !is_changed) continue;
     take_poses(context, all);
-    if (draw(context, all, begin_ns + period_ns))
-      context.mark({++pictures, begin_ns},
-                   std::array{msg::StageMark{msg::Stage::draw, 0, begin_ns, now_ns()}});
+    draw(context, all, begin_ns + period_ns);
     due_ns = std::max(due_ns + period_ns, now_ns());
     if (begin_ns < state_ns && !is_changed) continue;
     publish_state(all);

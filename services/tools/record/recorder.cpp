@@ -245,7 +245,11 @@ Result<void> record(const Options& options) {
   if (!rig) return tl::make_unexpected(rig.error());
   auto there = client::stream_names(*rig);
   if (!there) return tl::make_unexpected(there.error());
-  std::erase(*there, msg::kTestPictures);  // projections have what was shown
+  // Projections have what was shown.
+  std::erase_if(*there, [](const std::string& stream) {
+    return stream == msg::kTestPictures || stream.starts_with("content.") ||
+           stream.starts_with("guest.");
+  });
   const auto streams = choose(options.rings, *there);
   if (!streams) return tl::make_unexpected(streams.error());
   auto writer = recording::RecordingWriter::create(options.folder, about_of(*rig), *streams);
