@@ -7,6 +7,11 @@
 #include "renderer/media/picture.hpp"
 #include "services/content/source.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+/// Fontconfig keeps its fonts until the process ends.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+#endif
+
 using namespace handcast;
 using namespace handcast::content;
 using renderer::Rect;
