@@ -9,6 +9,7 @@
 #include "config/content_chain.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/content_command.hpp"
 #include "ipc/ring/writer.hpp"

@@ -117,8 +117,8 @@ void HandView::find_texels() {
                        std::sqrt(static_cast<float>(way.squared_px))});
   edge_px_.assign(on.pixels().size(), static_cast<float>(kReach));
   for (const auto& way : nearest.find(off.view(), on.view(), kReach))
-    edge_px_[static_cast<std::size_t>(way.y * width_ + way.x)] =
-        std::sqrt(static_cast<float>(way.squared_px));
+    edge_px_[static_cast<std::size_t>(way.y) * static_cast<std::size_t>(width_) +
+             static_cast<std::size_t>(way.x)] = std::sqrt(static_cast<float>(way.squared_px));
 }
 
 /// Under a joint is the texel of the palm, and of the back, that is nearest to it as seen from
@@ -135,8 +135,9 @@ HandView::Places HandView::places_on(const renderer::HandMesh& mesh, int width, 
   for (const auto& texel : map.texels()) {
     const bool is_back = facing[mesh.chart[texel.corners[0]]] > 0;
     const glm::vec3 at = texel.of<glm::vec3>(rest_mm);
+    const std::uint32_t row = texel.index / static_cast<std::uint32_t>(width);
     const auto x = static_cast<float>(texel.index % static_cast<std::uint32_t>(width)),
-               y = static_cast<float>(texel.index / static_cast<std::uint32_t>(width));
+               y = static_cast<float>(row);
     const glm::vec2 uv((x + 0.5f) / static_cast<float>(width),
                        1 - (y + 0.5f) / static_cast<float>(height));
     for (int j = 0; j < kJoints; ++j) {
