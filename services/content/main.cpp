@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <utility>
@@ -16,7 +15,6 @@
 #include "services/runtime/context.hpp"
 
 using namespace handcast;
-using namespace std::chrono_literals;
 using service::must;
 
 /// The state of an idle service is published so often, for `handcast content`.
@@ -180,8 +178,10 @@ static Result<void> check_contents(const config::Rig& rig, const content::Hands&
   return {};
 }
 
-/// Draws the contents of the hands content.rate_hz times a second, until the service ends.
+/// Draws the contents of the hands content.rate_hz times a second, until the service ends. At low
+/// priority: where cores are short, content is late rather than the light.
 static void run_content(service::Context& context) {
+  if (::nice(10) == -1) log::debug("the priority cannot be lowered");
   const auto& rig = context.rig();
   auto hands = must(content::Hands::load(rig, context.calibration()));
   // A service that is started again goes on with a content whose files are gone meanwhile.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/base/triangle.hpp"
 #include "services/content/settable_source.hpp"
 #include "services/content/surface_map.hpp"
 
@@ -16,27 +17,6 @@ constexpr float kReach_m = 0.018f;  ///< from the tip to the skin that it draws 
 constexpr float kDepth_m = 0.010f;  ///< how far trackers put a tip below the skin
 constexpr float kLongest_mm = 60;   ///< of a line between two pictures; a longer one is two strokes
 constexpr float kSameSide = -0.2f;  ///< cosine of the normals of texels that a brush reaches
-
-/// The nearest point of a triangle, as shares of its corners (Ericson, "Real-Time Collision
-/// Detection", 5.1.5).
-std::array<float, 3> nearest_parts(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b,
-                                   const glm::vec3& c) {
-  const glm::vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp),
-              d4 = glm::dot(ac, bp), d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    const float w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const float sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
-}
 
 /// Where the tip touches the hand, at rest.
 struct Touch {
@@ -100,7 +80,8 @@ class PaintSource final : public SettableSource {
       const auto& at = hand.positions_m;
       constexpr float kFar_m = 0.04f;  // longer than an edge and the reach
       if (std::abs(at[a].x - tip.x) > kFar_m || std::abs(at[a].y - tip.y) > kFar_m) continue;
-      const SurfaceTexel place{0, {a, b, c}, nearest_parts(tip, at[a], at[b], at[c])};
+      const glm::vec3 parts = renderer::nearest_in_triangle(tip, at[a], at[b], at[c]);
+      const SurfaceTexel place{0, {a, b, c}, {parts.x, parts.y, parts.z}};
       const glm::vec3 way = tip - place.of(at);
       const float away_m = glm::length(way), above_m = glm::dot(way, place.of(hand.normals));
       if (!(away_m < nearest_m) || above_m < -kDepth_m) continue;

@@ -4,31 +4,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "renderer/base/triangle.hpp"
+
 namespace handcast::twin {
 namespace {
 
 using renderer::HandMesh;
-
-/// The barycentric coordinates of the point of a triangle that is nearest to `p` (Ericson 2004,
-/// "Real-Time Collision Detection", section 5.1.5).
-glm::vec3 nearest_in(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b,
-                     const glm::vec3& c) {
-  const glm::vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap), d3 = glm::dot(ab, bp),
-              d4 = glm::dot(ac, bp), d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const float vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const float w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - w, w};
-  }
-  const float whole = va + vb + vc;
-  return {va / whole, vb / whole, vc / whole};
-}
 
 /// A triangle of the ground-truth mesh, prepared for searches: it lies in a sphere.
 struct Facet {
@@ -55,8 +36,9 @@ SurfacePoint nearest_point(const HandMesh& mesh, const std::vector<Facet>& facet
   for (std::size_t t = 0; t < facets.size(); ++t) {
     if (glm::distance(facets[t].middle, p) - facets[t].radius >= best_m) continue;
     const auto& [a, b, c] = mesh.triangles[t];
-    const SurfacePoint at{static_cast<std::uint16_t>(t),
-                          nearest_in(p, mesh.positions[a], mesh.positions[b], mesh.positions[c])};
+    const SurfacePoint at{
+        static_cast<std::uint16_t>(t),
+        renderer::nearest_in_triangle(p, mesh.positions[a], mesh.positions[b], mesh.positions[c])};
     const float far_m = glm::distance(at.on(mesh, mesh.positions), p);
     if (far_m >= best_m) continue;
     best_m = far_m;
