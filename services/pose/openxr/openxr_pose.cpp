@@ -72,7 +72,7 @@ class OpenXrPose final : public PoseSource {
   }
 
   Result<bool> ask(std::int64_t poll_ns, msg::HandPoses& poses) {
-    const std::int64_t asked_ns = this->asked_ns(poll_ns);
+    const std::int64_t asked_ns = this->asked_ns(poll_ns), asked_at_ns = now_ns();
     const auto answers = session_->locate(asked_ns);
     if (!answers) return tl::make_unexpected(answers.error());
     auto is_new = sampler_.take(*answers, poses);
@@ -80,7 +80,8 @@ class OpenXrPose final : public PoseSource {
     auto is_newest = are_newest(asked_ns, *answers);
     if (!is_newest) return is_newest;
     if (*is_newest && !polls_.is_listening()) return false;  // nobody knows since when
-    const std::int64_t origin_ns = *is_newest ? poll_ns - age_ns_ : asked_ns;
+    // A process that wakes late asks late: what came meanwhile was not there at `poll_ns`.
+    const std::int64_t origin_ns = *is_newest ? asked_at_ns - age_ns_ : asked_ns;
     if (origin_ns <= last_ns_) return false;
     last_ns_ = origin_ns;
     poses.header.frame_id = polls_.number(poll_ns);

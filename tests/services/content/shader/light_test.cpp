@@ -36,8 +36,9 @@ class LightTest : public LookStage {
   /// Where the texels are in camera space.
   std::vector<Place> places() const {
     const auto& hand = both_[0];
+    const SurfaceMap map(*hand.mesh, kWidth, kHeight);
     std::vector<Place> all;
-    for (const auto& texel : SurfaceMap(*hand.mesh, kWidth, kHeight).texels())
+    for (const auto& texel : map.texels())
       all.push_back(
           {texel.index, texel.of(hand.positions_m), glm::normalize(texel.of(hand.normals))});
     return all;

@@ -185,7 +185,7 @@ TEST_F(OpenXrPose, ASampleOfAHoldingRuntimeIsStampedByItsArrival) {
   // A machine that wakes late stamps some of them otherwise.
   EXPECT_GE(of_this_time, 5);
   std::ranges::sort(late_ms);
-  EXPECT_GE(late_ms[4], -0.5) << "it was not there before";
+  EXPECT_GE(late_ms[0], -0.05) << "it was not there before";
   EXPECT_LE(late_ms[4], 5) << "the runtime was asked every 40 ms, and more often once one was due";
 }
 
