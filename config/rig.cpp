@@ -36,6 +36,7 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "hand.right",
                                        "content.left",
                                        "content.right",
+                                       "desk.cues",
                                        "twin.motion",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};
@@ -70,7 +71,7 @@ void resolve_contents(const Listing& listing, const std::filesystem::path& folde
 
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
   for (const auto* service : {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector",
-                              "dlp", "content", "observer"})
+                              "dlp", "content", "desk", "observer"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,
@@ -187,6 +188,7 @@ static const Process* find_process(const Rig& rig, std::string_view service) {
   if (service == "projector") return &rig.projector.process;
   if (service == "dlp") return &rig.dlp.process;
   if (service == "content") return &rig.content.process;
+  if (service == "desk") return &rig.desk.process;
   if (service == "observer") return &rig.observer.process;
   return nullptr;
 }

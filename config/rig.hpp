@@ -7,7 +7,9 @@
 
 #include "config/sections/cascade.hpp"
 #include "config/sections/content.hpp"
+#include "config/sections/desk.hpp"
 #include "config/sections/dlp.hpp"
+#include "config/sections/light.hpp"
 #include "config/sections/projector.hpp"
 #include "config/sections/sensors.hpp"
 #include "config/sections/supervisor.hpp"
@@ -32,6 +34,8 @@ struct Rig {
   Projector projector;
   Dlp dlp;
   Content content;
+  Light light;
+  Desk desk;
   Hand hand;
   Cascade cascade;
   Twin twin;
@@ -60,8 +64,11 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("projector", rig.projector, "The projector.");
   visitor.section("dlp", rig.dlp, "The projector's own controller.");
   visitor.section("content", rig.content, "What is on the hands.");
+  visitor.section("light", rig.light, "The light as a whole, as a person beside it turns it.",
+                  Effect::live);
+  visitor.section("desk", rig.desk, "What people work the rig with: a page, OSC, MIDI, cues.");
   visitor.section("hand", rig.hand, "The model of the hand that is drawn.");
-  visitor.section("cascade", rig.cascade, "The steps from sensor data to light.");
+  visitor.section("cascade", rig.cascade, "The steps from sensor data to light.", Effect::live);
   visitor.section("twin", rig.twin,
                   "The digital twin, for the simulator and all back ends named twin.");
   visitor.section("observer", rig.observer, "The service that scores the light.");

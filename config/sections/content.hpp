@@ -29,12 +29,15 @@ void describe(Visitor& visitor, Content& content) {
       "left", content.left,
       "What is on the left hand: a look (handcast content lists them), a PNG or JPEG file in the "
       "layout that `handcast template` writes, builtin:atlas, builtin:checker, builtin:skeleton, "
-      "builtin:white, or sources and filters, e.g. \"film:a.mp4 speed=0.5 | isf:glow.fs\".");
-  visitor.field("right", content.right, "The same for the right hand.");
+      "builtin:white, or sources and filters, e.g. \"film:a.mp4 speed=0.5 | isf:glow.fs\".",
+      Effect::live);
+  visitor.field("right", content.right, "The same for the right hand.", Effect::live);
   visitor.field("transition", content.transition,
                 "How one content becomes another: cut, fade, or an ISF transition, e.g. "
-                "\"isf:wipe.fs\".");
-  visitor.field("transition_s", content.transition_s, between(0, 60, "s"), "How long that takes.");
+                "\"isf:wipe.fs\".",
+                Effect::live);
+  visitor.field("transition_s", content.transition_s, between(0, 60, "s"), "How long that takes.",
+                Effect::live);
   visitor.field("rate_hz", content.rate_hz, between(1, 240, "Hz"),
                 "Pictures per second of content that moves.");
   visitor.field("width_px", content.width_px, between(128, 2048, "px"),
@@ -44,15 +47,18 @@ void describe(Visitor& visitor, Content& content) {
                 "Height of the pictures.");
   visitor.field(
       "shading", content.shading, between(0, 1),
-      "Strength of the shading by a light that shines along the camera's axis. 0: no shading.");
+      "Strength of the shading by a light that shines along the camera's axis. 0: no shading.",
+      Effect::live);
   visitor.field(
       "smooth", content.smooth,
       "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "
-      "in each frame, but fine lines break up and edges have steps.");
+      "in each frame, but fine lines break up and edges have steps.",
+      Effect::live);
   visitor.field("gravity", content.gravity, between(-1, 1),
                 "Down, for content that reacts to it: a direction in the space of the camera, x to "
                 "the right in its image, y down, z away from it. [0, 0, 1] for a camera that looks "
-                "down from above.");
+                "down from above.",
+                Effect::live);
   visitor.section("process", content.process, "The process of the service.");
 }
 

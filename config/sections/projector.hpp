@@ -127,16 +127,19 @@ void describe(Visitor& visitor, Projector& projector) {
       "frame, a live rig only for the first frames, until it has measured the time.");
   visitor.field(
       "frame_wait_ms", projector.frame_wait_ms, between(0, 100, "ms"),
-      "How long a projector frame may wait for a newer camera image. 0: it does not wait.");
+      "How long a projector frame may wait for a newer camera image. 0: it does not wait.",
+      Effect::live);
   visitor.field("brightness", projector.brightness, between(0, 1),
-                "Factor of the light, a limit for people's eyes. 1: all of it.");
+                "Factor of the light, a limit for people's eyes. 1: all of it.", Effect::live);
   visitor.field("gamma", projector.gamma, between(0, 5),
                 "The projector turns a level 0..1 into the light level^gamma. 0: as in sRGB, the "
-                "encoding of pictures.");
+                "encoding of pictures.",
+                Effect::live);
   visitor.field("fade_s", projector.fade_s, between(0, 10, "s"),
                 "How long the light of a rig takes to full brightness at its start, and to black "
                 "at its stop, then at most half of supervisor.stop_s. A projector that replaces "
-                "another one does not fade.");
+                "another one does not fade.",
+                Effect::live);
   visitor.field(
       "packing", projector.packing,
       "The sub-frames in an output frame, for a projector that shows them one after the "

@@ -25,6 +25,12 @@ constexpr Range at_least(double min, std::string_view unit = "") {
 }
 /// @}
 
+/// When a change of a setting takes effect.
+enum class Effect {
+  restart,  ///< when its services are started again
+  live,     ///< at once, in all processes that read it
+};
+
 // How settings are declared. The settings of a struct `X` are declared once, by a free function:
 //
 //     template <class Visitor> void describe(Visitor& visitor, X& x) {
@@ -32,6 +38,9 @@ constexpr Range at_least(double min, std::string_view unit = "") {
 //                     "Frames per second requested from the camera.");
 //       visitor.section("replay", x.replay, "Frames from a folder instead of a camera.");
 //     }
+//
+// A setting whose declaration ends with Effect::live can be changed while the rig is up (`handcast
+// set`); of a section it is said of all settings in it.
 //
 // Collector (settings.hpp) is the visitor. The loader, the printer (commented TOML), `--set
 // path=value` and REFERENCE.md use the listing that it makes. The default of a setting is the

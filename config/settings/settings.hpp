@@ -41,10 +41,11 @@ using Target = std::variant<bool*, int*, double*, std::string*, std::vector<doub
 
 /// One declared setting of a struct, which must outlive it.
 struct Setting {
-  std::string path;           ///< e.g. "camera.replay.loop"
-  Target target;              ///< the value
-  Range range;                ///< the allowed numbers and their unit
-  std::string_view sentence;  ///< the description
+  std::string path;                 ///< e.g. "camera.replay.loop"
+  Target target;                    ///< the value
+  Range range;                      ///< the allowed numbers and their unit
+  std::string_view sentence;        ///< the description
+  Effect effect = Effect::restart;  ///< when a change takes effect
 
   /// The last part of the path: "loop".
   std::string_view name() const { return std::string_view(path).substr(path.rfind('.') + 1); }
@@ -77,34 +78,43 @@ class Collector {
   /// Declares a setting of the section that is being described. `value`, `sentence` and the unit in
   /// `range` must outlive the listing.
   /// @{
-  void field(std::string_view name, bool& value, std::string_view sentence) {
-    add(name, &value, {}, sentence);
+  void field(std::string_view name, bool& value, std::string_view sentence,
+             Effect effect = Effect::restart) {
+    add(name, &value, {}, sentence, effect);
   }
-  void field(std::string_view name, std::string& value, std::string_view sentence) {
-    add(name, &value, {}, sentence);
+  void field(std::string_view name, std::string& value, std::string_view sentence,
+             Effect effect = Effect::restart) {
+    add(name, &value, {}, sentence, effect);
   }
-  void field(std::string_view name, std::vector<std::string>& value, std::string_view sentence) {
-    add(name, &value, {}, sentence);
+  void field(std::string_view name, std::vector<std::string>& value, std::string_view sentence,
+             Effect effect = Effect::restart) {
+    add(name, &value, {}, sentence, effect);
   }
   template <Choice Enum>
-  void field(std::string_view name, Enum& value, std::string_view sentence) {
-    add(name, ChoiceTarget::of(value), {}, sentence);
+  void field(std::string_view name, Enum& value, std::string_view sentence,
+             Effect effect = Effect::restart) {
+    add(name, ChoiceTarget::of(value), {}, sentence, effect);
   }
   template <class T>
   requires std::same_as<T, int> || std::same_as<T, double> || std::same_as<T, std::vector<double>>
-  void field(std::string_view name, T& value, Range range, std::string_view sentence) {
-    add(name, &value, range, sentence);
+  void field(std::string_view name, T& value, Range range, std::string_view sentence,
+             Effect effect = Effect::restart) {
+    add(name, &value, range, sentence, effect);
   }
   /// @}
 
   /// Declares an inner section: calls describe() for `members`.
   template <class T>
-  void section(std::string_view name, T& members, std::string_view sentence) {
+  void section(std::string_view name, T& members, std::string_view sentence,
+               Effect effect = Effect::restart) {
     const auto outer = index_;
+    const auto outer_effect = effect_;
     index_ = listing_.size();
+    if (effect == Effect::live) effect_ = effect;
     listing_.push_back({path_of(outer, name), sentence, {}});
     describe(*this, members);
     index_ = outer;
+    effect_ = outer_effect;
   }
 
  private:
@@ -112,13 +122,16 @@ class Collector {
     const auto& outer = listing_[section].path;
     return outer.empty() ? std::string(name) : outer + "." + std::string(name);
   }
-  void add(std::string_view name, Target target, Range range, std::string_view sentence) {
+  void add(std::string_view name, Target target, Range range, std::string_view sentence,
+           Effect effect) {
+    if (effect_ == Effect::live) effect = effect_;
     listing_[index_].settings.push_back(
-        {path_of(index_, name), std::move(target), range, sentence});
+        {path_of(index_, name), std::move(target), range, sentence, effect});
   }
 
   Listing& listing_;
-  std::size_t index_ = 0;  ///< of the section that is being described
+  std::size_t index_ = 0;            ///< of the section that is being described
+  Effect effect_ = Effect::restart;  ///< of all settings of that section
 };
 
 /// The settings that describe() declares for `declared`, which must outlive the listing.
