@@ -52,8 +52,7 @@ void describe(Visitor& visitor, Content& content) {
   visitor.field(
       "smooth", content.smooth,
       "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "
-      "in each frame, but fine lines break up and edges have steps.",
-      Effect::live);
+      "in each frame, but fine lines break up and edges have steps.");
   visitor.field("gravity", content.gravity, between(-1, 1),
                 "Down, for content that reacts to it: a direction in the space of the camera, x to "
                 "the right in its image, y down, z away from it. [0, 0, 1] for a camera that looks "

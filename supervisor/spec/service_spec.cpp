@@ -9,6 +9,7 @@
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/largest_images.hpp"
+#include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/msg/test_picture.hpp"
@@ -53,6 +54,7 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::TestPicture>(std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
                                      msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px,
                                                              msg::kLargestTestPictureHeight_px)),
+      RingSpec::of<msg::LiveSettings>(std::string(msg::kLiveSettings), 8, kNewestOnly),
       guest_ring("guest.left"),
       guest_ring("guest.right"),
   };

@@ -89,7 +89,7 @@ TEST(Brightness, RisesAtTheStartOfARig) {
   config::Projector settings;
   settings.fade_s = 1;
   constexpr std::int64_t kEpoch_ns = 50'000 * kMs, kFirst_ns = kEpoch_ns + 2'000 * kMs;
-  Brightness brightness(settings, kEpoch_ns);
+  Brightness brightness(settings, config::Light(), kEpoch_ns);
   EXPECT_EQ(brightness.at(kFirst_ns)[255], 0);
   const auto half = brightness.at(kFirst_ns + 500 * kMs);
   EXPECT_EQ(half, renderer::light_table(settings, 0.5));
@@ -97,7 +97,7 @@ TEST(Brightness, RisesAtTheStartOfARig) {
 }
 
 TEST(Brightness, IsFullAtOnceInAProcessThatReplacesAnotherOne) {
-  Brightness brightness(config::Projector(), 50'000 * kMs);
+  Brightness brightness(config::Projector(), config::Light(), 50'000 * kMs);
   EXPECT_EQ(brightness.at(90'000 * kMs), renderer::light_table(config::Projector()));
 }
 
@@ -105,7 +105,7 @@ TEST(Brightness, IsFullAtOnceInAProcessThatReplacesAnotherOne) {
 Brightness full_brightness(double fade_s) {
   config::Projector settings;
   settings.fade_s = fade_s;
-  Brightness brightness(settings, 1 * kMs);
+  Brightness brightness(settings, config::Light(), 1 * kMs);
   brightness.fade_at(90'000 * kMs);
   return brightness;
 }
@@ -134,7 +134,7 @@ TEST(Brightness, FallsFromWhereItIsInTheMiddleOfItsRise) {
   config::Projector settings;
   settings.fade_s = 1;
   constexpr std::int64_t kFirst_ns = 2'000 * kMs, kFall_ns = kFirst_ns + 500 * kMs;
-  Brightness brightness(settings, 1'000 * kMs);
+  Brightness brightness(settings, config::Light(), 1'000 * kMs);
   brightness.fade_at(kFirst_ns);
   EXPECT_NEAR(brightness.fade_at(kFall_ns), 0.5, 1e-9);
   brightness.fall(kFall_ns, 3'000 * kMs);
