@@ -19,7 +19,7 @@ constexpr char kEnd = '\f';  ///< of the values of one change; a TOML text has i
 constexpr std::int64_t kOneChange_ns = 1'000'000'000;
 constexpr std::string_view kWhere = "live settings";
 
-/// The setting that an assignment names.
+/// The setting that an assignment or a line of values names.
 std::string_view path_in(std::string_view assignment) {
   auto path = assignment.substr(0, assignment.find('='));
   while (path.ends_with(' ')) path.remove_suffix(1);

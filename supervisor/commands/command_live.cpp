@@ -105,7 +105,7 @@ Result<void> get(const LiveBoard& board, const Query& query) {
     auto json = nlohmann::json::array();
     for (const auto& shown : all) json.push_back(json_of(shown));
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-  } else if (all.size() == 1) {
+  } else if (all.size() == 1 && all.front().setting->path == query.path) {
     explain(all.front());
   } else {
     std::ranges::for_each(all, print_one);

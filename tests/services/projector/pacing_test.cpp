@@ -110,6 +110,34 @@ Brightness full_brightness(double fade_s) {
   return brightness;
 }
 
+TEST(Brightness, ABlackoutIsAtOnceAndEndsAtOnce) {
+  auto brightness = full_brightness(1);
+  brightness.adjust({}, {.blackout = true}, 91'000 * kMs);
+  EXPECT_EQ(brightness.at(91'000 * kMs), renderer::light_table({}, 0));
+  EXPECT_FALSE(brightness.has_fallen()) << "the service does not end";
+  brightness.adjust({}, {}, 92'000 * kMs);
+  EXPECT_EQ(brightness.at(92'000 * kMs), renderer::light_table({}));
+}
+
+TEST(Brightness, TheMasterFadesFromWhereItIs) {
+  auto brightness = full_brightness(1);
+  brightness.adjust({}, {.master = 0.5, .master_s = 2}, 91'000 * kMs);
+  EXPECT_NEAR(brightness.fade_at(92'000 * kMs), 0.75, 1e-9);
+  brightness.adjust({}, {.blackout = true, .master = 0.5, .master_s = 2}, 92'000 * kMs);
+  EXPECT_EQ(brightness.fade_at(92'000 * kMs), 0);
+  brightness.adjust({}, {.master = 0.5, .master_s = 2}, 92'500 * kMs);
+  EXPECT_NEAR(brightness.fade_at(92'500 * kMs), 0.625, 1e-9) << "it goes on meanwhile";
+  brightness.adjust({}, {.master = 1, .master_s = 1}, 93'000 * kMs);
+  EXPECT_NEAR(brightness.fade_at(93'500 * kMs), 0.75, 1e-9);
+  EXPECT_NEAR(brightness.fade_at(99'000 * kMs), 1, 1e-9);
+}
+
+TEST(Brightness, TheLimitForEyesIsLive) {
+  auto brightness = full_brightness(1);
+  brightness.adjust({.brightness = 0.25}, {}, 91'000 * kMs);
+  EXPECT_EQ(brightness.at(91'000 * kMs), renderer::light_table({.brightness = 0.25}));
+}
+
 TEST(Brightness, FallsEvenlyToBlackAndStaysBlack) {
   constexpr std::int64_t kFall_ns = 95'000 * kMs;
   auto brightness = full_brightness(1);
