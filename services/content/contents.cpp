@@ -48,12 +48,17 @@ Contents::Contents(Hands hands, const config::Content& settings,
 }
 
 void Contents::start(const std::optional<msg::ContentState>& before) {
+  std::array<std::string, 2> first;
   for (std::size_t i = 0; i < worn_.size(); ++i) {
-    if (before) worn_[i].distrust(before->hands[i].trying.view());
-    worn_[i].announce();
+    first[i] = worn_[i].content_of_settings();
+    if (before && !before->hands[i].trying.view().empty()) {
+      worn_[i].distrust(before->hands[i].trying.view());
+      if (const auto shown = before->hands[i].content.view(); !shown.empty()) first[i] = shown;
+    }
+    worn_[i].announce(first[i]);
   }
   publish_state();
-  for (auto& worn : worn_) worn.start();
+  for (std::size_t i = 0; i < worn_.size(); ++i) worn_[i].start(first[i]);
   auto commands = take_commands();
   for (auto& command : commands) command.transition_s = 0;
   obey(commands);

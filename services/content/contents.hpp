@@ -32,14 +32,14 @@ class HandContent {
   /// @}
   /// Notes in state() what start() or obey() will begin.
   /// @{
-  void announce() { state_.trying.set(content_of_settings()); }
+  void announce(const std::string& content) { state_.trying.set(content); }
   void announce(const msg::ContentCommand& command) {
     if (command.is_for(like_.side)) state_.trying.set(command.content.view());
   }
   /// @}
-  /// Shows the content of the settings, without a transition. What cannot be opened becomes the
-  /// fault in state(), and white is shown.
-  void start();
+  /// Shows a content, without a transition. What cannot be opened becomes the fault in state(), and
+  /// white is shown.
+  void start(const std::string& content);
   /// Changes to the content of a command, if it is for this hand. What cannot be opened becomes the
   /// fault in state(), and the content of before goes on.
   void obey(const msg::ContentCommand& command);
@@ -54,12 +54,13 @@ class HandContent {
   bool is_due() const { return state_.pictures == 0 || mixer_.is_changing() || is_new_; }
   /// What is shown.
   const msg::ShownContent& state() const { return state_; }
-
- private:
-  Result<void> change(const std::string& content, std::string_view transition, double seconds);
+  /// What the settings say.
   const std::string& content_of_settings() const {
     return like_.side == Side::left ? settings_.left : settings_.right;
   }
+
+ private:
+  Result<void> change(const std::string& content, std::string_view transition, double seconds);
   void publish(std::int64_t time_ns);
   void note_fault(const Error& error);
 
@@ -92,7 +93,7 @@ class Contents {
            Streams streams, const OpenRing& ring, std::function<void(const Error&)> tolerate);
 
   /// Shows what was asked for last: in the settings, or by a command. `before`: the state that a
-  /// process before this one has left. What it died with is refused.
+  /// process before this one has left. What it died with is refused, and what it showed goes on.
   void start(const std::optional<msg::ContentState>& before);
   /// Waits for commands until a time, CLOCK_MONOTONIC, and obeys those that come. Returns whether
   /// any came. Older commands that newer ones replace are passed over.

@@ -44,8 +44,7 @@ Result<void> HandContent::change(const std::string& content, std::string_view tr
   return {};
 }
 
-void HandContent::start() {
-  const auto& content = content_of_settings();
+void HandContent::start(const std::string& content) {
   const auto shown = change(content, "cut", 0);
   if (shown) return;
   (void)change("builtin:white", "cut", 0);

@@ -103,14 +103,15 @@ TEST_F(ContentsTest, WhatIsBegunIsToldBeforeAndTriedUntilItHasDrawn) {
   EXPECT_EQ(left().content.view(), "builtin:checker");
 }
 
-TEST_F(ContentsTest, WhatAProcessDiedWithIsRefusedUntilItIsAskedForAgain) {
+TEST_F(ContentsTest, WhatAProcessDiedWithIsRefusedUntilItIsAskedForAgainAndItsContentGoesOn) {
   command(1, "builtin:checker");
   msg::ContentState before;
+  before.hands[0].content.set("builtin:joints");
   before.hands[0].trying.set("builtin:checker");
   auto contents = this->contents();
   contents.start(before);
   contents.publish_state();
-  EXPECT_EQ(left().content.view(), "builtin:atlas");
+  EXPECT_EQ(left().content.view(), "builtin:joints");
   EXPECT_THAT(std::string(left().fault.view()), HasSubstr("died with its first picture"));
   command(2, "builtin:checker");
   contents.obey_until(now_ns());
