@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/content/hand_content.hpp"
-
 #include <fmt/format.h>
 
 #include <utility>
@@ -8,6 +6,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "renderer/base/mip_chain.hpp"
+#include "services/content/contents.hpp"
 
 namespace handcast::content {
 namespace {
@@ -45,8 +44,7 @@ Result<void> HandContent::change(const std::string& content, std::string_view tr
   return {};
 }
 
-void HandContent::start() {
-  const auto& content = content_of_settings();
+void HandContent::start(const std::string& content) {
   const auto shown = change(content, "cut", 0);
   if (shown) return;
   (void)change("builtin:white", "cut", 0);
