@@ -56,6 +56,7 @@ static content::Opening opening_of(const config::Rig& rig, msg::Side side,
   like.height = rig.content.height_px;
   like.meshes = hands.meshes();
   like.side = side;
+  like.sound = rig.content.sound;
   return like;
 }
 

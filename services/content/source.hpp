@@ -150,6 +150,7 @@ struct Opening {
   Side side = Side::left;  ///< the hand that wears it
   /// Gives the ring of a stream of the rig ("guest.left"). Empty: there is no rig.
   std::function<Result<ipc::Segment>(std::string_view stream)> ring{};
+  std::string sound = "default";  ///< ALSA's name of the device that is heard
 };
 
 /// A kind of source.
