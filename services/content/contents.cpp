@@ -19,6 +19,7 @@ Opening opening_for(Side side, const Hands& hands, const config::Content& settin
   opening.meshes = hands.meshes();
   opening.side = side;
   opening.calibration = &calibration;
+  opening.sound = settings.sound;
   return opening;
 }
 

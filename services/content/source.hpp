@@ -152,6 +152,7 @@ struct Opening {
   const calib::Calibration* calibration = nullptr;
   /// Gives the ring of a stream of the rig ("guest.left"). Empty: there is no rig.
   std::function<Result<ipc::Segment>(std::string_view stream)> ring{};
+  std::string sound = "default";  ///< ALSA's name of the device that is heard
 };
 
 /// A kind of source.
