@@ -53,22 +53,28 @@ static Result<msg::LiveSettings> newest(ipc::Segment ring) {
 
 Result<msg::LiveSettings> LiveBoard::now() const { return again().and_then(newest); }
 
-Result<void> LiveBoard::amend(const std::function<Result<void>(msg::LiveSettings&)>& change) const {
+Result<std::uint64_t> LiveBoard::amend(
+    const std::function<Result<void>(msg::LiveSettings&)>& change) const {
   auto ring = again();
   if (!ring) return tl::make_unexpected(ring.error());
   auto writer = ipc::Writer<msg::LiveSettings>::attach(std::move(*ring), Deadline::in(2s));
   if (!writer) return tl::make_unexpected(writer.error());
   auto settings = now();
   if (!settings) return tl::make_unexpected(settings.error());
-  if (auto done = change(*settings); !done) return done;
+  settings->transition.set("");
+  settings->transition_s = -1;
+  if (const auto done = change(*settings); !done) return tl::make_unexpected(done.error());
   ++settings->header.frame_id;
   settings->header.origin_ns = now_ns();
   writer->publish(*settings);
-  return {};
+  return settings->header.frame_id;
 }
 
-Result<void> LiveBoard::set(std::span<const std::string> assignments, std::string_view source) {
+Result<std::uint64_t> LiveBoard::set(std::span<const std::string> assignments,
+                                     std::string_view source, const Transition& transition) {
   return amend([&](msg::LiveSettings& settings) -> Result<void> {
+    settings.transition.set(transition.name);
+    settings.transition_s = static_cast<float>(transition.seconds);
     const auto values = changed_values(filed_, settings.values.view(), assignments);
     if (!values) return tl::make_unexpected(values.error());
     const std::vector<std::string> parts(assignments.begin(), assignments.end());
@@ -76,15 +82,15 @@ Result<void> LiveBoard::set(std::span<const std::string> assignments, std::strin
   });
 }
 
-Result<void> LiveBoard::undo(std::string_view source) {
+Result<std::uint64_t> LiveBoard::undo(std::string_view source) {
   return amend([&](msg::LiveSettings& settings) { return config::undo(settings, source); });
 }
 
-Result<void> LiveBoard::redo(std::string_view source) {
+Result<std::uint64_t> LiveBoard::redo(std::string_view source) {
   return amend([&](msg::LiveSettings& settings) { return config::redo(settings, source); });
 }
 
-Result<void> LiveBoard::load(std::string_view preset, std::string_view source) {
+Result<std::uint64_t> LiveBoard::load(std::string_view preset, std::string_view source) {
   const auto file = preset_file_of(file_, preset);
   if (!file) return tl::make_unexpected(file.error());
   std::error_code unknown;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -12,6 +13,12 @@
 #include "ipc/shm/segment.hpp"
 
 namespace handcast::config {
+
+/// How one content becomes another; empty, negative: as content.transition and _s say.
+struct Transition {
+  std::string name;
+  double seconds = -1;
+};
 
 /// The live settings of a rig that is up, for programs that change them. Each change locks the
 /// ring, reads the newest values and publishes the new ones, so that several programs can change
@@ -26,17 +33,19 @@ class LiveBoard {
   /// The newest settings.
   Result<msg::LiveSettings> now() const;
 
-  /// Changes settings: see changed_values(). `source`: who asks. Errors: bad_config, unavailable
-  /// (another program holds the ring for more than 2 s).
-  Result<void> set(std::span<const std::string> assignments, std::string_view source);
+  /// Changes settings: see changed_values(). `source`: who asks. Returns the number of the change
+  /// (header.frame_id). Errors: bad_config, unavailable (another program holds the ring for more
+  /// than 2 s).
+  Result<std::uint64_t> set(std::span<const std::string> assignments, std::string_view source,
+                            const Transition& transition = {});
   /// See config::undo() and config::redo(). Errors: those of set().
   /// @{
-  Result<void> undo(std::string_view source);
-  Result<void> redo(std::string_view source);
+  Result<std::uint64_t> undo(std::string_view source);
+  Result<std::uint64_t> redo(std::string_view source);
   /// @}
 
   /// Replaces all live values by those of a preset. Errors: bad_config (there is none), set().
-  Result<void> load(std::string_view preset, std::string_view source);
+  Result<std::uint64_t> load(std::string_view preset, std::string_view source);
   /// Keeps the present values as a preset, or, save(), for the next start of the rig. Errors:
   /// bad_config (not a name), unavailable.
   /// @{
@@ -50,7 +59,7 @@ class LiveBoard {
   LiveBoard(ipc::Segment ring, Rig filed, std::filesystem::path file);
   Result<ipc::Segment> again() const;
   Result<std::string> kept() const;
-  Result<void> amend(const std::function<Result<void>(msg::LiveSettings&)>& change) const;
+  Result<std::uint64_t> amend(const std::function<Result<void>(msg::LiveSettings&)>& change) const;
 
   ipc::Segment ring_;
   Rig filed_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string_view>
 
 #include "ipc/msg/header.hpp"
@@ -21,7 +22,14 @@ struct LiveSettings {
 
   Header header;            ///< frame_id: counts the changes
   MessageText<64> source;   ///< who made the last change: "set", "osc 10.0.0.7", "cue 3"
-  MessageText<512> change;  ///< what it was, for people
+  MessageText<512> change;  ///< what it was: "path=value, path=value", or words
+  /// How content that is other by this change comes: as content.transition and _s; empty, negative:
+  /// as these say.
+  /// @{
+  MessageText<512> transition;
+  float transition_s = -1;
+  std::uint32_t reserved = 0;
+  /// @}
   /// Lines "path = value", as TOML: the values that are not those of the rig file.
   MessageText<16384> values;
   /// Values before the last changes, and those that were taken back: each ends with a form feed,

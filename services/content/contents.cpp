@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/live/live_values.hpp"
 #include "ipc/base/clock.hpp"
 
 namespace handcast::content {
@@ -33,22 +34,27 @@ std::optional<T> given(Result<T> result, const std::function<void(const Error&)>
 
 }  // namespace
 
-Contents::Contents(Hands hands, const config::Content& settings,
-                   const calib::Calibration& calibration, Streams streams, const OpenRing& ring,
+Contents::Contents(Hands hands, const config::Rig& filed, const calib::Calibration& calibration,
+                   Streams streams, const OpenRing& ring,
                    std::function<void(const Error&)> tolerate)
-    : hands_(std::move(hands)),
+    : filed_(filed),
+      hands_(std::move(hands)),
       calibration_(calibration),
       streams_(std::move(streams)),
       tolerate_(std::move(tolerate)) {
   for (const Side side : kSides) {
-    auto like = opening_for(side, hands_, settings, calibration);
+    auto like = opening_for(side, hands_, filed.content, calibration);
     like.ring = ring;
-    worn_.emplace_back(std::move(like), settings,
+    worn_.emplace_back(std::move(like), filed.content,
                        std::move(streams_.pictures[static_cast<std::size_t>(side)]));
   }
 }
 
 void Contents::start(const std::optional<msg::ContentState>& before) {
+  if (const auto live = take_change()) {
+    hands_.adjust(live->rig);
+    for (auto& worn : worn_) worn.adjust(live->rig.content, live->settings.header.frame_id);
+  }
   std::array<std::string, 2> first;
   for (std::size_t i = 0; i < worn_.size(); ++i) {
     first[i] = worn_[i].content_of_settings();
@@ -59,39 +65,43 @@ void Contents::start(const std::optional<msg::ContentState>& before) {
     worn_[i].announce(first[i]);
   }
   publish_state();
-  for (std::size_t i = 0; i < worn_.size(); ++i) worn_[i].start(first[i]);
-  auto commands = take_commands();
-  for (auto& command : commands) command.transition_s = 0;
-  obey(commands);
-  for (auto& worn : worn_) worn.trust();
+  for (std::size_t i = 0; i < worn_.size(); ++i) {
+    worn_[i].start(first[i]);
+    if (first[i] != worn_[i].content_of_settings()) worn_[i].obey({"cut", 0});
+    worn_[i].trust();
+  }
 }
 
 bool Contents::obey_until(std::int64_t time_ns) {
-  if (!streams_.commands.await(Deadline::at_ns(time_ns))) return false;
-  const auto commands = take_commands();
-  obey(commands);
-  return !commands.empty();
+  if (!streams_.live.await(Deadline::at_ns(time_ns))) return false;
+  const auto live = take_change();
+  if (live) obey(*live);
+  return live.has_value();
 }
 
-/// The newest commands for both hands that have come, in their order.
-std::vector<msg::ContentCommand> Contents::take_commands() {
-  std::vector<msg::ContentCommand> commands;
-  while (streams_.commands.await(Deadline::now())) {
-    const auto command = given(streams_.commands.next(Deadline::now()), tolerate_);
-    if (!command) break;
-    std::erase_if(commands, [&](const auto& old) { return (old.hands & ~(*command)->hands) == 0; });
-    commands.push_back(**command);
-  }
-  return commands;
+/// The newest live settings, if they are new and fit to the file.
+std::optional<service::LiveRig> Contents::take_change() {
+  const auto settings = given(streams_.live.latest(Deadline::now()), tolerate_);
+  if (!settings) return std::nullopt;
+  auto rig = given(config::with_live(filed_, (*settings)->values.view()), tolerate_);
+  if (!rig) return std::nullopt;
+  return service::LiveRig{std::move(*rig), **settings};
 }
 
-/// What is begun is announced before, because it may end this process.
-void Contents::obey(const std::vector<msg::ContentCommand>& commands) {
-  for (const auto& command : commands) {
-    for (auto& worn : worn_) worn.announce(command);
-    publish_state();
-    for (auto& worn : worn_) worn.obey(command);
+/// A content that the change names is shown again, also if it was refused before. What is begun is
+/// announced before, because it may end this process.
+void Contents::obey(const service::LiveRig& live) {
+  const auto& settings = live.settings;
+  hands_.adjust(live.rig);
+  std::vector<HandContent*> begun;
+  for (auto& worn : worn_) {
+    const bool is_named = settings.change.view().find(worn.setting()) != std::string_view::npos;
+    if (worn.adjust(live.rig.content, settings.header.frame_id) || is_named) begun.push_back(&worn);
   }
+  for (auto* worn : begun) worn->announce(worn->content_of_settings());
+  if (!begun.empty()) publish_state();
+  for (auto* worn : begun)
+    worn->obey({std::string(settings.transition.view()), settings.transition_s});
 }
 
 void Contents::take_poses() {

@@ -6,15 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "config/sections/content.hpp"
+#include "config/live/live_board.hpp"
+#include "config/rig.hpp"
 #include "ipc/msg/camera_frame.hpp"
-#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/content_picture.hpp"
+#include "ipc/msg/content_state.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/writer.hpp"
 #include "services/content/hands.hpp"
 #include "services/content/mixer.hpp"
+#include "services/runtime/live_settings.hpp"
 
 namespace handcast::content {
 
@@ -31,18 +33,16 @@ class HandContent {
   void trust() { distrusted_.clear(); }
   /// @}
   /// Notes in state() what start() or obey() will begin.
-  /// @{
   void announce(const std::string& content) { state_.trying.set(content); }
-  void announce(const msg::ContentCommand& command) {
-    if (command.is_for(like_.side)) state_.trying.set(command.content.view());
-  }
-  /// @}
   /// Shows a content, without a transition. What cannot be opened becomes the fault in state(), and
   /// white is shown.
   void start(const std::string& content);
-  /// Changes to the content of a command, if it is for this hand. What cannot be opened becomes the
-  /// fault in state(), and the content of before goes on.
-  void obey(const msg::ContentCommand& command);
+  /// Changes to the content of the settings. What cannot be opened becomes the fault in state(),
+  /// and the content of before goes on.
+  void obey(const config::Transition& transition);
+  /// Takes other settings, whose content obey() shows. Returns whether it is another one. `change`:
+  /// msg::LiveSettings::header.frame_id.
+  bool adjust(const config::Content& settings, std::uint64_t change);
   /// Draws the picture for a time, CLOCK_MONOTONIC, and publishes it if it is new. `camera`: see
   /// Moment.
   void draw(const HandState& hand, const HandState& other, std::int64_t time_ns,
@@ -54,6 +54,10 @@ class HandContent {
   bool is_due() const { return state_.pictures == 0 || mixer_.is_changing() || is_new_; }
   /// What is shown.
   const msg::ShownContent& state() const { return state_; }
+  /// The name of its setting: "content.left".
+  std::string_view setting() const {
+    return like_.side == Side::left ? "content.left" : "content.right";
+  }
   /// What the settings say.
   const std::string& content_of_settings() const {
     return like_.side == Side::left ? settings_.left : settings_.right;
@@ -76,7 +80,7 @@ class HandContent {
 /// The rings of the content service.
 struct Streams {
   ipc::Reader<msg::HandPoses> poses;
-  ipc::Reader<msg::ContentCommand> commands;
+  ipc::Reader<msg::LiveSettings> live;
   ipc::Reader<msg::CameraFrame> images;  ///< is read only while a content needs them
   ipc::Writer<msg::ContentState> states;
   std::array<ipc::Writer<msg::ContentPicture>, 2> pictures;  ///< left, right
@@ -88,15 +92,16 @@ using OpenRing = std::function<Result<ipc::Segment>(std::string_view stream)>;
 /// The contents of both hands, and what moves them. One thread.
 class Contents {
  public:
-  /// `calibration` outlives it. `tolerate` gets errors of the rings other than timeouts.
-  Contents(Hands hands, const config::Content& settings, const calib::Calibration& calibration,
+  /// `filed`: the rig of the file. `calibration` outlives it. `tolerate` gets errors of the rings
+  /// other than timeouts.
+  Contents(Hands hands, const config::Rig& filed, const calib::Calibration& calibration,
            Streams streams, const OpenRing& ring, std::function<void(const Error&)> tolerate);
 
-  /// Shows what was asked for last: in the settings, or by a command. `before`: the state that a
+  /// Shows what was asked for last: in the file, or live. `before`: the state that a
   /// process before this one has left. What it died with is refused, and what it showed goes on.
   void start(const std::optional<msg::ContentState>& before);
-  /// Waits for commands until a time, CLOCK_MONOTONIC, and obeys those that come. Returns whether
-  /// any came. Older commands that newer ones replace are passed over.
+  /// Waits for a change of live settings until a time, CLOCK_MONOTONIC, and obeys it. Returns
+  /// whether one came. Those that a newer one follows are passed over.
   bool obey_until(std::int64_t time_ns);
   /// Draws what is due for a time, CLOCK_MONOTONIC. A hand that is not there needs no new pictures.
   void draw(std::int64_t time_ns);
@@ -104,11 +109,12 @@ class Contents {
   void publish_state();
 
  private:
-  std::vector<msg::ContentCommand> take_commands();
-  void obey(const std::vector<msg::ContentCommand>& commands);
+  std::optional<service::LiveRig> take_change();
+  void obey(const service::LiveRig& live);
   void take_poses();
   std::optional<CameraView> newest_view(bool is_needed);
 
+  config::Rig filed_;
   Hands hands_;
   const calib::Calibration& calibration_;
   Streams streams_;

@@ -51,13 +51,18 @@ void HandContent::start(const std::string& content) {
   note_fault(shown.error());
 }
 
-void HandContent::obey(const msg::ContentCommand& command) {
-  if (!command.is_for(like_.side)) return;
-  const std::string content(command.content.view()), transition(command.transition.view());
+bool HandContent::adjust(const config::Content& settings, std::uint64_t change) {
+  const auto before = content_of_settings();
+  settings_ = settings;
+  state_.command = change;
+  return content_of_settings() != before;
+}
+
+void HandContent::obey(const config::Transition& transition) {
+  const auto& content = content_of_settings();
   const auto shown =
-      change(content, transition.empty() ? settings_.transition : transition,
-             command.transition_s < 0 ? settings_.transition_s : command.transition_s);
-  state_.command = command.header.frame_id;
+      change(content, transition.name.empty() ? settings_.transition : transition.name,
+             transition.seconds < 0 ? settings_.transition_s : transition.seconds);
   if (shown)
     log::info("{}: {}", name_of(like_.side), printable(content));
   else

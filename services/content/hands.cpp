@@ -99,6 +99,13 @@ Hands::Hands(std::array<renderer::HandMesh, 2> meshes, const config::Rig& rig,
   }
 }
 
+void Hands::adjust(const config::Rig& rig) {
+  skin_ = rig.cascade.skin;
+  const auto& down = rig.content.gravity;
+  down_ = {down[0], down[1], down[2]};
+  for (Hand& hand : hands_) hand.history.adjust(rig.cascade.predict);
+}
+
 void Hands::push(const msg::HandPoses& poses) {
   const std::int64_t origin_ns = poses.header.origin_ns;
   if (origin_ns > poses.header.published_ns + kEarliest_ns) return;

@@ -44,6 +44,9 @@ class Hands {
   Hands(std::array<renderer::HandMesh, 2> meshes, const config::Rig& rig,
         const calib::Calibration& calibration);
 
+  /// Uses other settings from now on.
+  void adjust(const config::Rig& rig);
+
   /// Adds a tracker sample. One that claims to be from the future is ignored, as is a hand of low
   /// confidence; exchanged sides are corrected as the projector does.
   void push(const msg::HandPoses& poses);

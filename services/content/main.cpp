@@ -23,7 +23,7 @@ static content::Streams streams_of(service::Context& context) {
     return must(context.writer<msg::ContentPicture>(stream));
   };
   return {.poses = must(context.reader<msg::HandPoses>("pose.hands")),
-          .commands = must(context.reader<msg::ContentCommand>(msg::kContentCommands)),
+          .live = must(context.reader<msg::LiveSettings>(msg::kLiveSettings)),
           .images = must(ipc::Reader<msg::CameraFrame>::watch(must(context.ring("camera.frames")))),
           .states = must(context.writer<msg::ContentState>("content.state")),
           .pictures = {pictures("content.left"), pictures("content.right")}};
@@ -53,19 +53,20 @@ static std::optional<msg::ContentState> last_state(const service::Context& conte
 /// priority: where cores are short, content is late rather than the light.
 static void run_content(service::Context& context) {
   if (::nice(10) == -1) log::debug("the priority cannot be lowered");
-  const auto& settings = context.rig().content;
+  const auto& filed = context.filed();
   const auto& calibration = context.calibration();
-  auto hands = must(content::Hands::load(context.rig(), calibration));
-  const auto checked = content::check_contents(hands, settings, calibration, last_state(context));
+  auto hands = must(content::Hands::load(filed, calibration));
+  const auto checked =
+      content::check_contents(hands, filed.content, calibration, last_state(context));
   if (!checked) service::give_up(checked.error());
   context.stand_by();
   const auto before = last_state(context);
-  content::Contents contents(std::move(hands), settings, calibration, streams_of(context),
+  content::Contents contents(std::move(hands), filed, calibration, streams_of(context),
                              guests_of(context),
                              [&](const Error& error) { context.tolerate(error); });
   contents.start(before);
   context.ready();
-  const auto period_ns = seconds_to_ns(1 / settings.rate_hz);
+  const auto period_ns = seconds_to_ns(1 / filed.content.rate_hz);
   std::int64_t due_ns = now_ns(), state_ns = due_ns;
   while (context.running()) {
     const bool is_changed = contents.obey_until(due_ns);
@@ -91,7 +92,7 @@ int main(int argc, char** argv) {
                        .paced_by = "content.rate_hz",
                        .publishes = {"content.left", "content.right", "content.state"},
                        .subscribes = {"pose.hands", "camera.frames", "guest.left", "guest.right",
-                                      std::string(msg::kContentCommands)},
+                                      std::string(msg::kLiveSettings)},
                        .settings = {"content", "hand", "cascade.predict", "cascade.skin"}},
                       argc, argv, run_content, check_content);
 }

@@ -41,6 +41,8 @@ class Context {
  public:
   /// The configuration of the rig, with the live settings at the start of this process.
   const config::Rig& rig() const { return rig_; }
+  /// The same as its file has it.
+  const config::Rig& filed() const { return filed_; }
   /// What people change from now on. Errors: those of ring() and LiveSettings::follow().
   Result<std::unique_ptr<LiveSettings>> live_settings() const;
   /// The calibration of the rig.

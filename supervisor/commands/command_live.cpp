@@ -37,7 +37,7 @@ template <class Work>
 int with_board(const std::string& rig, const Work& work) {
   auto board = board_of(rig);
   if (!board) return complain(board.error());
-  const Result<void> done = work(*board);
+  const auto done = work(*board);
   return done ? kExitDone : complain(done.error());
 }
 
@@ -195,7 +195,7 @@ int run_preset(const Arguments& arguments) {
   if (const auto code = line.answered(arguments)) return *code;
   return with_board(rig, [&](LiveBoard& board) -> Result<void> {
     if (store) return board.store(name);
-    if (!name.empty()) return board.load(name, kSource);
+    if (!name.empty()) return board.load(name, kSource).map([](auto) {});
     for (const auto& each : config::preset_names(board.file())) fmt::print("{}\n", each);
     return {};
   });

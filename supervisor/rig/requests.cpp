@@ -13,7 +13,6 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
-#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/test_picture.hpp"
@@ -168,8 +167,7 @@ void give_status(LiveRig& rig, const Reply& reply) {
 int access_to(std::string_view stream) {
   const bool is_for_guests =
       std::ranges::find(msg::kGuestPictures, stream) != msg::kGuestPictures.end();
-  const bool is_for_tools = stream == msg::kTestPictures || stream == msg::kContentCommands ||
-                            stream == msg::kLiveSettings;
+  const bool is_for_tools = stream == msg::kTestPictures || stream == msg::kLiveSettings;
   return is_for_guests || is_for_tools ? O_RDWR : O_RDONLY;
 }
 

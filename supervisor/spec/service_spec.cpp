@@ -3,8 +3,8 @@
 
 #include "ipc/daemon/contract.hpp"
 #include "ipc/msg/camera_frame.hpp"
-#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/content_picture.hpp"
+#include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
@@ -66,7 +66,6 @@ std::vector<ipc::RingSpec> content_streams(std::size_t picture_bytes) {
   return {
       RingSpec::of<msg::ContentPicture>("content.left", kPictureSlots, kNewestOnly, picture_bytes),
       RingSpec::of<msg::ContentPicture>("content.right", kPictureSlots, kNewestOnly, picture_bytes),
-      RingSpec::of<msg::ContentCommand>(std::string(msg::kContentCommands), 16, kWithHistory),
       RingSpec::of<msg::ContentState>("content.state", 8, kNewestOnly),
   };
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "config/live/live_values.hpp"
 #include "ipc/base/clock.hpp"
 #include "tests/services/content/made_hand.hpp"
 
@@ -33,10 +34,10 @@ class ContentsTest : public testing::Test {
  protected:
   Contents contents() const {
     return {hands(),
-            settings_,
+            filed(),
             calibration_,
             {.poses = reader<msg::HandPoses>(poses_),
-             .commands = reader<msg::ContentCommand>(commands_),
+             .live = reader<msg::LiveSettings>(live_),
              .images = reader<msg::CameraFrame>(images_),
              .states = writer<msg::ContentState>(states_),
              .pictures = {writer<msg::ContentPicture>(left_), writer<msg::ContentPicture>(right_)}},
@@ -44,12 +45,19 @@ class ContentsTest : public testing::Test {
             [](const Error& error) { ADD_FAILURE() << error.what; }};
   }
   static Hands hands() { return *Hands::load(*config::parse_rig("", ""), calib::reference_rig()); }
-  void command(std::uint64_t number, const std::string& content, std::uint32_t hands = 0b11) {
-    msg::ContentCommand command;
-    command.header.frame_id = number;
-    command.hands = hands;
-    command.content.set(content);
-    asked_.publish(command);
+  config::Rig filed() const {
+    config::Rig rig;
+    rig.content = settings_;
+    return rig;
+  }
+  /// Asks for content as `handcast content` does.
+  void ask(std::uint64_t number, const std::vector<std::string>& changes) {
+    const auto values = config::changed_values(filed(), asked_.values.view(), changes);
+    ASSERT_TRUE(values) << values.error().what;
+    asked_.header.frame_id = number;
+    asked_.values.set(*values);
+    asked_.change.set(changes.front());
+    asks_.publish(asked_);
   }
   /// What was told last of the left hand.
   const msg::ShownContent& left() {
@@ -64,23 +72,24 @@ class ContentsTest : public testing::Test {
   }();
   const calib::Calibration calibration_ = calib::reference_rig();
   const ipc::Segment poses_ = ring<msg::HandPoses>("poses"),
-                     commands_ = ring<msg::ContentCommand>("commands"),
+                     live_ = ring<msg::LiveSettings>("live"),
                      images_ = ring<msg::CameraFrame>("images"),
                      states_ = ring<msg::ContentState>("states"),
                      left_ =
                          ring<msg::ContentPicture>("left", msg::ContentPicture::bytes(128, 128)),
                      right_ =
                          ring<msg::ContentPicture>("right", msg::ContentPicture::bytes(128, 128));
-  ipc::Writer<msg::ContentCommand> asked_ = writer<msg::ContentCommand>(commands_);
+  ipc::Writer<msg::LiveSettings> asks_ = writer<msg::LiveSettings>(live_);
+  msg::LiveSettings asked_;
   ipc::Reader<msg::ContentState> told_ = reader<msg::ContentState>(states_);
   msg::ShownContent last_;
 };
 
-TEST_F(ContentsTest, ACommandThatANewerOneReplacesIsPassedOver) {
+TEST_F(ContentsTest, AChangeThatANewerOneFollowsIsPassedOver) {
   auto contents = this->contents();
   contents.start({});
-  command(1, "nowhere.png", 0b01);
-  command(2, "builtin:white");
+  ask(1, {"content.left=film:nowhere.mp4"});
+  ask(2, {"content.left=builtin:white"});
   EXPECT_TRUE(contents.obey_until(now_ns()));
   EXPECT_FALSE(contents.obey_until(now_ns()));
   contents.publish_state();
@@ -93,7 +102,7 @@ TEST_F(ContentsTest, WhatIsBegunIsToldBeforeAndTriedUntilItHasDrawn) {
   auto contents = this->contents();
   contents.start({});
   contents.draw(now_ns());
-  command(1, "builtin:checker", 0b01);
+  ask(1, {"content.left=builtin:checker"});
   contents.obey_until(now_ns());
   EXPECT_EQ(left().trying.view(), "builtin:checker");
   EXPECT_EQ(left().content.view(), "builtin:atlas");
@@ -104,7 +113,7 @@ TEST_F(ContentsTest, WhatIsBegunIsToldBeforeAndTriedUntilItHasDrawn) {
 }
 
 TEST_F(ContentsTest, WhatAProcessDiedWithIsRefusedUntilItIsAskedForAgainAndItsContentGoesOn) {
-  command(1, "builtin:checker");
+  ask(1, {"content.left=builtin:checker"});
   msg::ContentState before;
   before.hands[0].content.set("builtin:joints");
   before.hands[0].trying.set("builtin:checker");
@@ -113,7 +122,7 @@ TEST_F(ContentsTest, WhatAProcessDiedWithIsRefusedUntilItIsAskedForAgainAndItsCo
   contents.publish_state();
   EXPECT_EQ(left().content.view(), "builtin:joints");
   EXPECT_THAT(std::string(left().fault.view()), HasSubstr("died with its first picture"));
-  command(2, "builtin:checker");
+  ask(2, {"content.left=builtin:checker"});
   contents.obey_until(now_ns());
   contents.publish_state();
   EXPECT_EQ(left().content.view(), "builtin:checker");
