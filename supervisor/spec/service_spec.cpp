@@ -88,6 +88,12 @@ void add_second_view(const config::Rig& rig, std::vector<ServiceSpec>& services)
                         .instance_of = "landmarks"});
 }
 
+/// Whether the desk has anything to serve.
+bool has_surface(const config::Desk& desk) {
+  return !desk.page.listen.empty() || !desk.osc.listen.empty() || !desk.osc.send.empty() ||
+         !desk.midi.device.empty() || !desk.cues.empty();
+}
+
 ipc::RingSpec marks_of(const ServiceSpec& service) {
   return ipc::RingSpec::of<msg::StageMarks>(daemon::marks_stream_of(service.name), kMarkSlots,
                                             kWithHistory);
@@ -118,6 +124,7 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
   services.push_back({"content", "content.left", "", 0});
   services.back().message_bytes =
       msg::ContentPicture::bytes(rig.content.width_px, rig.content.height_px);
+  if (has_surface(rig.desk)) services.push_back({"desk", "", "", 0});
   if (rig.dlp.backend != "none") {
     services.push_back({"dlp", "", rig.dlp.backend, 0});
     services.back().has_safe_state = true;
