@@ -75,7 +75,10 @@ class LooksTest : public LookStage {
       return level_of(texel, 0) + level_of(texel, 1) + level_of(texel, 2) > 90;
     });
     EXPECT_GT(lit, width * height / 100);
-    EXPECT_NE(early.pixels(), late.pixels()) << "it stands still";
+    // What depends on the pose alone stands still with the hand.
+    if (name != "appearance") {
+      EXPECT_NE(early.pixels(), late.pixels()) << "it stands still";
+    }
   }
 
   test::Scratch scratch_;
