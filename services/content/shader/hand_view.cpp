@@ -101,7 +101,7 @@ bool HandView::mentions(std::string_view prefix, std::string_view name) const {
 /// Finds the texels of the charts, and those beside them.
 void HandView::find_texels() {
   const auto& mesh = *meshes_[0];
-  map_.emplace(mesh, width_, height_);
+  map_ = surface_map_of(mesh, width_, height_);
   facing_ = facing_of(mesh);
   rest_mm_ = rest_positions_mm(mesh);
   renderer::Image<std::uint8_t> on(width_, height_), off(width_, height_, 1);
@@ -127,12 +127,12 @@ HandView::Places HandView::places_on(const renderer::HandMesh& mesh, int width, 
   Places places;
   for (int j = 0; j < kJoints; ++j)
     places.rest_mm[j] = in_wrist_mm(mesh, glm::vec3(mesh.rest[j][3]));
-  const SurfaceMap map(mesh, width, height);
+  const auto map = surface_map_of(mesh, width, height);
   const auto facing = facing_of(mesh);
   const auto rest_mm = rest_positions_mm(mesh);
   std::array<std::array<float, kJoints>, 2> nearest{};
   for (auto& each : nearest) each.fill(1e9f);
-  for (const auto& texel : map.texels()) {
+  for (const auto& texel : map->texels()) {
     const bool is_back = facing[mesh.chart[texel.corners[0]]] > 0;
     const glm::vec3 at = texel.of<glm::vec3>(rest_mm);
     const std::uint32_t row = texel.index / static_cast<std::uint32_t>(width);

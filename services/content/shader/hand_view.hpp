@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
-#include <optional>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -81,7 +81,7 @@ class HandView {
   std::array<const renderer::HandMesh*, 2> meshes_;  ///< that wears it, the other
   Side side_;
   int width_, height_;
-  std::optional<SurfaceMap> map_;
+  std::shared_ptr<const SurfaceMap> map_;
   std::vector<float> facing_;       ///< per chart: 1 on the back, -1 on the palm
   std::vector<float> edge_px_;      ///< per texel of the picture
   std::vector<glm::vec3> rest_mm_;  ///< per vertex
