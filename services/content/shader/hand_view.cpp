@@ -108,9 +108,9 @@ bool HandView::mentions(std::string_view prefix, std::string_view name) const {
 
 /// Finds the texels of the charts, and those beside them.
 HandView::Layout HandView::lay_out(const renderer::HandMesh& mesh, int width, int height) {
-  Layout layout{width, height, SurfaceMap(mesh, width, height), {}, {}};
+  Layout layout{width, height, surface_map_of(mesh, width, height), {}, {}};
   renderer::Image<std::uint8_t> on(width, height), off(width, height, 1);
-  for (const auto& texel : layout.surface.texels()) {
+  for (const auto& texel : layout.surface->texels()) {
     on.pixels()[texel.index] = 1;
     off.pixels()[texel.index] = 0;
   }
@@ -133,12 +133,12 @@ HandView::Places HandView::places_on(const renderer::HandMesh& mesh, int width, 
   Places places;
   for (int j = 0; j < kJoints; ++j)
     places.rest_mm[j] = in_wrist_mm(mesh, glm::vec3(mesh.rest[j][3]));
-  const SurfaceMap map(mesh, width, height);
+  const auto map = surface_map_of(mesh, width, height);
   const auto facing = facing_of(mesh);
   const auto rest_mm = rest_positions_mm(mesh);
   std::array<std::array<float, kJoints>, 2> nearest{};
   for (auto& each : nearest) each.fill(1e9f);
-  for (const auto& texel : map.texels()) {
+  for (const auto& texel : map->texels()) {
     const bool is_back = facing[mesh.chart[texel.corners[0]]] > 0;
     const glm::vec3 at = texel.of<glm::vec3>(rest_mm);
     const std::uint32_t row = texel.index / static_cast<std::uint32_t>(width);
@@ -200,7 +200,7 @@ void HandView::draw_map(std::size_t index, const Layout& layout, const HandState
   const auto facing = [&](const SurfaceTexel& texel) {
     return facing_[meshes_[0]->chart[texel.corners[0]]];
   };
-  for (const auto& texel : layout.surface.texels()) {
+  for (const auto& texel : layout.surface->texels()) {
     glm::vec4& out = place(texel.index);
     if (kind == kRest) out = at_rest(texel);
     if (kind == kBone) out = on_bone(texel, layout.edge_px[texel.index]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
-#include <optional>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -74,7 +74,7 @@ class HandView {
   /// The hand in a map of a size.
   struct Layout {
     int width, height;
-    SurfaceMap surface;
+    std::shared_ptr<const SurfaceMap> surface;
     std::vector<Beside> beside;
     std::vector<float> edge_px;  ///< per texel of the map
   };
