@@ -167,12 +167,12 @@ Kills kill_content(const TwinRig& rig, int kills) {
 /// both alike.
 void measure_frames(const RigFolder& folder, int turns, std::vector<Goal>& goals) {
   const TwinRig rig(folder, settings_with("builtin:atlas"));
-  auto commands = command_writer();
+  auto board = board_of_twin();
   std::vector<double> still_us, moving_us, ratio;
   int missed = 0, frames = 0;
   for (int turn = 0; turn < turns; ++turn) {
     const auto watch = [&](const char* content) {
-      change_ms(commands, content);
+      change_ms(board, content);
       ::usleep(350'000);  // the transition
       return watch_frames(1);
     };
