@@ -26,6 +26,8 @@ constexpr std::array kVerbs{
               "Applies a changed rig file: replaces only the services whose settings changed.",
               run_reload, Group::change},
     VerbEntry{"content", "Shows or changes what is on the hands.", run_content, Group::change},
+    VerbEntry{"desk", "Prints the address of the page that shows and works a rig.", run_desk,
+              Group::change},
     VerbEntry{"top", "Watches rings and services in the terminal.", run_top, Group::look},
     VerbEntry{"preview", "Shows what a rig sees and casts, in a window or as a picture.", nullptr,
               Group::look},

@@ -54,6 +54,7 @@ int run_reload(const Arguments& arguments);
 int run_trace(const Arguments& arguments);
 int run_latency(const Arguments& arguments);
 int run_content(const Arguments& arguments);
+int run_desk(const Arguments& arguments);
 int run_top(const Arguments& arguments);
 int run_install_units(const Arguments& arguments);
 /// @}
