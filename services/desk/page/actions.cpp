@@ -59,14 +59,13 @@ Result<void> cue(CueDeck* cues, const json& body, const std::string& source) {
   if (!cues) return fail(Errc::bad_config, "The rig has no cue list: see desk.cues.");
   const auto what = text_in(body, "do");
   if (!what) return tl::make_unexpected(what.error());
-  if (*what == "go") return cues->go(source);
-  if (*what == "back") return cues->back(source);
-  if (*what == "hold") return cues->hold(source);
-  const auto index = body.find("index");
-  if (*what == "jump" && index != body.end() && index->is_number_unsigned())
-    return cues->jump(index->get<std::size_t>(), source);
-  return fail(Errc::bad_data,
-              "A cue must be \"go\", \"back\", \"hold\", or \"jump\" with an \"index\".");
+  log::info("{}: cue {}", printable(source), printable(*what));
+  if (*what == "go") return cues->go(), Result<void>();
+  if (*what == "back") return cues->back(), Result<void>();
+  if (*what == "hold") return cues->hold(), Result<void>();
+  const auto cue = text_in(body, "cue");
+  if (*what == "jump" && cue) return cues->jump(*cue);
+  return fail(Errc::bad_data, "A cue must be \"go\", \"back\", \"hold\", or \"jump\" to a \"cue\".");
 }
 
 Result<void> preset(Panel& panel, const json& body, const std::string& source, bool stores) {

@@ -121,11 +121,12 @@ void RigWatch::tell_hands() {
 
 void RigWatch::tell_cues() {
   if (!cues_) return board_.tell(Topic::cues, "null");
-  const auto at = cues_->position();
-  board_.tell(Topic::cues, json_text({{"names", at.names},
-                                      {"current", at.current ? json(*at.current) : json()},
-                                      {"held", at.held},
-                                      {"fault", at.fault}}));
+  const auto place = cues_->place();
+  board_.tell(Topic::cues, json_text({{"names", place->names},
+                                      {"current", place->current},
+                                      {"next", place->next},
+                                      {"held", place->is_held},
+                                      {"faded", std::round(place->faded * 100) / 100}}));
 }
 
 void RigWatch::tell_status() {

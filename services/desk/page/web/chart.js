@@ -35,11 +35,12 @@ export function drawHistogram(canvas, bins, marks) {
     context.textAlign = ms === 0 ? 'left' : 'center';
     context.fillText(ms === 0 ? '0 ms' : String(ms), ms * step, height - 4);
   }
-  for (const [name, value] of marks) {
-    if (value === null) continue;
-    const x = Math.min(value, bins.length - 1) * step;
-    context.fillRect(Math.round(x), 12, 1, floor - 12);
-    context.textAlign = x > width - 60 ? 'right' : 'left';
-    context.fillText(name, x + (x > width - 60 ? -4 : 4), 11);
-  }
+  // The smaller one is named at its left, the larger one at its right.
+  marks.forEach(([name, value], i) => {
+    if (value === null) return;
+    const x = Math.min(value, bins.length - 1) * step, isLeft = i === 0 ? x > 40 : x > width - 40;
+    context.fillRect(Math.round(x), 2, 1, floor - 2);
+    context.textAlign = isLeft ? 'right' : 'left';
+    context.fillText(name, x + (isLeft ? -5 : 5), 11);
+  });
 }

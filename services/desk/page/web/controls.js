@@ -159,14 +159,21 @@ const kWidgets = {
   text: textWidget, numbers: textWidget, texts: textWidget,
 };
 
+/** A value for people. */
+function shown(control, toml) {
+  const value = parse(toml);
+  if (control.kind === 'toggle') return value ? 'on' : 'off';
+  if (value === '' || (Array.isArray(value) && value.length === 0)) return 'empty';
+  return Array.isArray(value) ? toml : String(value);
+}
+
 function rangeText(control) {
   const parts = [];
   const unit = control.unit ? ` ${control.unit}` : '';
   if (control.min !== null && control.max !== null) parts.push(`${control.min} to ${control.max}${unit}`);
   else if (control.min !== null) parts.push(`from ${control.min}${unit}`);
-  const initial = parse(control.initial);
-  parts.push(`default ${initial === '' ? 'empty' : Array.isArray(initial) ? control.initial : initial}`);
-  if (control.filed !== control.initial) parts.push(`in the rig file ${parse(control.filed)}`);
+  parts.push(`default ${shown(control, control.initial)}`);
+  if (control.filed !== control.initial) parts.push(`in the rig file ${shown(control, control.filed)}`);
   return parts.join(' · ');
 }
 

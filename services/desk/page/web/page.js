@@ -15,7 +15,9 @@ function notice(sentence) {
 
 function link(state, text) {
   document.querySelector('#link .dot').className = `dot ${state}`;
-  setText($('link-text'), text);
+  if ($('link-text').textContent === text) return;
+  const [first, ...more] = text.split(' as ');
+  $('link-text').replaceChildren(first, ...more.map((role) => el('span', {className: 'as'}, ` as ${role}`)));
 }
 
 /** Trades the token of the address for a cookie, and takes it out of the address and the history. */

@@ -155,6 +155,7 @@ export class Cues {
   constructor(mayChange) {
     this.mayChange = mayChange;
     this.names = null;
+    this.buttons = [];
     for (const what of ['go', 'back', 'hold']) {
       $(`cue-${what}`).addEventListener('click', () => post('/api/cue', {do: what}));
       $(`cue-${what}`).disabled = true;
@@ -163,19 +164,29 @@ export class Cues {
 
   take(cues) {
     const names = cues?.names ?? [];
+    const current = cues?.current ?? -1, next = cues?.next ?? 0;
     for (const what of ['go', 'back', 'hold']) $(`cue-${what}`).disabled = !this.mayChange || names.length === 0;
-    setText($('cue-text'), cues === null ? 'no list: see desk.cues' : cues.fault || (cues.current === null ? `${names.length} cues` : `${cues.current + 1} of ${names.length}`));
+    $('cue-go').disabled ||= next >= names.length;
+    $('cue-back').disabled ||= current < 1;
+    setText($('cue-go'), next < names.length ? `Go: ${names[next]}` : 'Go');
+    setText($('cue-text'), cues === null ? 'no list: see desk.cues' : current < 0 ? `${names.length} cues` : `${current + 1} of ${names.length}`);
     $('cue-hold').setAttribute('aria-pressed', String(cues?.held ?? false));
-    if (JSON.stringify(names) !== this.names) {
-      this.names = JSON.stringify(names);
-      $('cue-list').replaceChildren(...names.map((name, index) => {
-        const button = el('button', {}, el('i', {}, String(index + 1)), name);
-        button.disabled = !this.mayChange;
-        button.addEventListener('click', () => post('/api/cue', {do: 'jump', index}));
-        return el('li', {}, button);
-      }));
-    }
-    [...$('cue-list').querySelectorAll('button')].forEach((button, i) => button.setAttribute('aria-current', String(i === cues?.current)));
+    if (JSON.stringify(names) !== this.names) this.list(names);
+    this.buttons.forEach((button, i) => {
+      button.setAttribute('aria-current', String(i === current));
+      button.style.setProperty('--faded', i === current ? `${100 * cues.faded}%` : '0%');
+    });
+  }
+
+  list(names) {
+    this.names = JSON.stringify(names);
+    this.buttons = names.map((name, index) => {
+      const button = el('button', {}, el('i', {}, String(index + 1)), name);
+      button.disabled = !this.mayChange;
+      button.addEventListener('click', () => post('/api/cue', {do: 'jump', cue: String(index + 1)}));
+      return button;
+    });
+    $('cue-list').replaceChildren(...this.buttons.map((button) => el('li', {}, button)));
   }
 }
 

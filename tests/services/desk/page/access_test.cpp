@@ -100,7 +100,7 @@ TEST_F(PageTest, NothingChangesByGet) {
   for (const auto* method : {"PUT", "DELETE", "OPTIONS", "PATCH", "TRACE"})
     EXPECT_EQ(ask(port_, method, "/api/set", as(Role::owner)).status, 405) << method;
   EXPECT_TRUE(panel_.sets.empty());
-  EXPECT_TRUE(cues_.sources.empty());
+  EXPECT_EQ(cues_.place()->current, -1);
 }
 
 TEST_F(PageTest, ARestartKeepsAddressAndTokens) {

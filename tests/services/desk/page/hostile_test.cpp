@@ -85,8 +85,8 @@ TEST_F(PageTest, JsonThatMakesNoSenseIsRefusedWithASentence) {
   EXPECT_EQ(post("/api/set", std::string(60'000, '['), Role::owner).status, 400);
   EXPECT_EQ(post("/api/set", R"({"set":["no.such=1"]})", Role::owner).status, 422);
   EXPECT_EQ(post("/api/set", R"({"set":["projector.brightness=7"]})", Role::owner).status, 422);
-  EXPECT_EQ(post("/api/cue", R"({"do":"jump","index":-1})", Role::owner).status, 400);
-  EXPECT_EQ(post("/api/cue", R"({"do":"jump","index":999})", Role::owner).status, 422);
+  EXPECT_EQ(post("/api/cue", R"({"do":"jump","cue":1})", Role::owner).status, 400);
+  EXPECT_EQ(post("/api/cue", R"({"do":"jump","cue":"999"})", Role::owner).status, 422);
   EXPECT_EQ(post("/api/show", R"({"hand":"third","content":"wave"})", Role::owner).status, 400);
   EXPECT_TRUE(panel_.sets.empty());
   EXPECT_TRUE(panel_.shown.empty());

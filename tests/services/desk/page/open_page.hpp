@@ -17,43 +17,47 @@
 
 namespace handcast::test {
 
-/// A cue list in memory, which records what was asked of it.
+/// A cue list in memory.
 class TableCues final : public desk::CueDeck {
  public:
-  desk::CuePosition position() const override {
-    const std::lock_guard lock(mutex_);
-    return position_;
+  void go() override { move(place()->next); }
+  void back() override { move(place()->current - 1); }
+  void hold() override {
+    auto place = *this->place();
+    place.is_held = !place.is_held;
+    put(place);
   }
-  Result<void> go(std::string_view source) override {
-    return move(position_.current ? *position_.current + 1 : 0, source);
-  }
-  Result<void> back(std::string_view source) override {
-    return move(position_.current.value_or(0) - 1, source);
-  }
-  Result<void> jump(std::size_t index, std::string_view source) override {
-    return move(index, source);
-  }
-  Result<void> hold(std::string_view source) override {
-    const std::lock_guard lock(mutex_);
-    position_.held = !position_.held;
-    sources.emplace_back(source);
+  Result<void> jump(std::string_view cue) override {
+    int number = 0;
+    std::from_chars(cue.data(), cue.data() + cue.size(), number);
+    if (number < 1 || number > static_cast<int>(place()->names.size()))
+      return fail(Errc::bad_config, "there is no cue '" + std::string(cue) + "'");
+    move(number - 1);
     return {};
   }
-
-  std::vector<std::string> sources;  ///< of all changes
+  void key(std::string_view) override {}
+  std::shared_ptr<const desk::CuePlace> place() const override {
+    const std::lock_guard lock(mutex_);
+    return place_;
+  }
 
  private:
-  Result<void> move(std::size_t to, std::string_view source) {
+  void put(desk::CuePlace place) {
     const std::lock_guard lock(mutex_);
-    if (to >= position_.names.size()) return fail(Errc::bad_config, "there is no such cue");
-    position_.current = to;
-    sources.emplace_back(source);
-    return {};
+    place_ = std::make_shared<const desk::CuePlace>(std::move(place));
+  }
+  void move(int to) {
+    auto place = *this->place();
+    if (to < 0 || to >= static_cast<int>(place.names.size())) return;
+    place.current = to;
+    place.next = to + 1;
+    put(place);
   }
 
   mutable std::mutex mutex_;
-  desk::CuePosition position_{
-      .names = {"Doors", "Empty hands", "First light", "Water", "Skeleton", "Fire", "Out"}};
+  std::shared_ptr<const desk::CuePlace> place_ =
+      std::make_shared<const desk::CuePlace>(desk::CuePlace{
+          .names = {"Doors", "Empty hands", "First light", "Water", "Skeleton", "Fire", "Out"}});
 };
 
 /// The page of a rig that is not there, at any port, with its file in a folder of its own.
