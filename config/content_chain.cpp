@@ -103,8 +103,8 @@ Result<void> settle_kind(ContentElement& element) {
   if (kind.empty()) kind = content_kind_of(element.what);
   if (kind.empty()) kind = "look";
   if (kind == "builtin") kind = "pattern";
-  if (!element.what.empty() ||
-      (kind != "look" && kind != "pattern" && kind != "capture" && !is_file_kind(kind)))
+  if (!element.what.empty() || (kind != "look" && kind != "pattern" && kind != "capture" &&
+                                kind != "view" && !is_file_kind(kind)))
     return {};
   return fail(Errc::bad_config,
               "content is empty; name a look, a file or a source, e.g. \"builtin:atlas\"");
@@ -199,6 +199,11 @@ Result<std::string> resolve_content(std::string_view text, const std::filesystem
   auto chain = parse_content(text);
   if (!chain) return tl::make_unexpected(chain.error());
   for (auto& element : *chain) {
+    if (element.kind == "view") {
+      auto inner = resolve_content(element.what, folder);
+      if (!inner) return inner;
+      element.what = std::move(*inner);
+    }
     if (!is_content_file(element)) continue;
     const auto whole = expand_home(element.what);
     if (!whole) return tl::make_unexpected(whole.error());

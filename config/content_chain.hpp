@@ -26,7 +26,8 @@ struct ContentElement {
 /// `what` may have spaces. It is put in double quotes if it ends with what looks like a parameter
 /// or has a bar between spaces, and so is a value with spaces; within quotes, \" and \\ stand for "
 /// and \. Without a kind, the end of a file's name says it
-/// (content_kind_of()); a name without an end is a look. "builtin:NAME" is "pattern:NAME".
+/// (content_kind_of()); a name without an end is a look. "builtin:NAME" is "pattern:NAME". `what`
+/// of the kind view is itself an element.
 using ContentChain = std::vector<ContentElement>;
 
 /// Reads it. Errors (bad_config), each a sentence: it or an element is empty, a quote is not

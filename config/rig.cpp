@@ -8,6 +8,8 @@
 #include <span>
 
 #include "config/content_chain.hpp"
+#include "config/keep_out.hpp"
+#include "config/live_files.hpp"
 #include "config/measured.hpp"
 #include "config/settings/files.hpp"
 #include "config/settings/frozen_file.hpp"
@@ -105,6 +107,8 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
   check_cores(rig, file, faults);
   check_currents(rig.dlp, file, faults);
   check_gravity(rig.content.gravity, file, faults);
+  if (const auto areas = parse_keep_out(rig.light.keep_out); !areas)
+    faults.add(fmt::format("{}: light.keep_out: {}", file, areas.error().what));
   const auto& correct = rig.cascade.correct;
   if (correct.bone_short_px >= correct.bone_long_px)
     faults.add(
@@ -113,11 +117,10 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
                     file, correct.bone_short_px, correct.bone_long_px));
 }
 
-/// The values of the last text win over those of the others, and `settings` over all. The first
-/// text is the rig file.
-Result<Rig> parse_layers(std::span<const NamedText> layers,
+/// The values of the last text win over those of the others and of `rig`, and `settings` over all.
+/// The first text is named by faults between settings.
+Result<Rig> parse_layers(Rig rig, std::span<const NamedText> layers,
                          const std::vector<std::string>& settings) {
-  Rig rig;
   const auto listing = list_settings(rig);
   Faults faults;
   // The folder that this process was started in may have been deleted since: what is relative to it
@@ -203,19 +206,24 @@ bool has_process(std::string_view service) { return find_process(Rig(), service)
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
                       const std::vector<std::string>& settings) {
   const NamedText whole{file.string(), toml};
-  return parse_layers({&whole, 1}, settings);
+  return parse_layers({}, {&whole, 1}, settings);
+}
+
+Result<Rig> change_rig(const Rig& rig, const NamedText& layer,
+                       const std::vector<std::string>& settings) {
+  return parse_layers(rig, {&layer, 1}, settings);
 }
 
 Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   std::vector<NamedText> layers;
   std::error_code unknown;
-  for (const auto& layer : {file, measured_file_of(file)}) {
-    if (!layers.empty() && !std::filesystem::exists(layer, unknown)) break;
+  for (const auto& layer : {file, measured_file_of(file), live_file_of(file)}) {
+    if (!layers.empty() && !std::filesystem::exists(layer, unknown)) continue;
     auto text = read_text(layer);
     if (!text) return tl::make_unexpected(text.error());
     layers.push_back({layer.string(), std::move(*text)});
   }
-  return parse_layers(layers, settings);
+  return parse_layers({}, layers, settings);
 }
 
 std::string print_rig(const Rig& rig) {

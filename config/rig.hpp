@@ -15,6 +15,7 @@
 #include "config/sections/supervisor.hpp"
 #include "config/sections/twin.hpp"
 #include "config/sections/viewpoint.hpp"
+#include "config/settings/frozen_file.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::config {
@@ -68,7 +69,7 @@ void describe(Visitor& visitor, Rig& rig) {
                   Effect::live);
   visitor.section("desk", rig.desk, "What people work the rig with: a page, OSC, MIDI, cues.");
   visitor.section("hand", rig.hand, "The model of the hand that is drawn.");
-  visitor.section("cascade", rig.cascade, "The steps from sensor data to light.", Effect::live);
+  visitor.section("cascade", rig.cascade, "The steps from sensor data to light.");
   visitor.section("twin", rig.twin,
                   "The digital twin, for the simulator and all back ends named twin.");
   visitor.section("observer", rig.observer, "The service that scores the light.");
@@ -92,10 +93,11 @@ Process process_of(const Rig& rig, std::string_view service);
 /// Whether a rig file has a section [NAME.process] for this service.
 bool has_process(std::string_view service);
 
-/// Reads a rig file, applies the measured settings beside it (measured.hpp), and `settings`
-/// ("path=value") on top. Relative paths become absolute: those of the files start at their folder,
-/// those of `settings` at the current folder. Errors: bad_config, with one line for each fault,
-/// e.g. "FILE:LINE: camera.rate_hz: 0 is outside 1..2000 Hz".
+/// Reads a rig file, applies the measured settings beside it (measured.hpp), the live ones that
+/// were saved (live_files.hpp), and `settings` ("path=value") on top. Relative paths become
+/// absolute: those of the files start at their folder, those of `settings` at the current folder.
+/// Errors: bad_config, with one line for each fault, e.g. "FILE:LINE: camera.rate_hz: 0 is
+/// outside 1..2000 Hz".
 Result<Rig> load_rig(const std::filesystem::path& file,
                      const std::vector<std::string>& settings = {});
 
@@ -103,6 +105,11 @@ Result<Rig> load_rig(const std::filesystem::path& file,
 /// relative paths start at its folder.
 Result<Rig> parse_rig(const std::string& toml, const std::filesystem::path& file,
                       const std::vector<std::string>& settings = {});
+
+/// The rig after another text, which is applied like a rig file, and `settings` on top. Errors:
+/// those of load_rig().
+Result<Rig> change_rig(const Rig& rig, const NamedText& layer,
+                       const std::vector<std::string>& settings);
 
 /// The rig as a commented TOML file with all settings, which load_rig() reads back.
 std::string print_rig(const Rig& rig);

@@ -90,6 +90,8 @@ struct Filter {
   bool hindsight = true;
   double lost_ms = 300;
   bool definitions = true;
+
+  bool operator==(const Filter&) const = default;  ///< compares all members
 };
 
 template <class Visitor>
@@ -201,13 +203,15 @@ struct Mask {
 template <class Visitor>
 void describe(Visitor& visitor, Mask& mask) {
   visitor.field("threshold", mask.threshold, between(0, 255),
-                "Grey value above which a pixel can belong to the hand. 0: chosen for each image.");
+                "Grey value above which a pixel can belong to the hand. 0: chosen for each image.",
+                Effect::live);
   visitor.field(
       "forearm_mm", mask.forearm_mm, between(-100, 400, "mm"),
       "Where the hand ends on the forearm, measured from the wrist joint towards the elbow.");
   visitor.field(
       "advance", mask.advance,
-      "Move the mask with the hand from the time of the exposure to the time of the light.");
+      "Move the mask with the hand from the time of the exposure to the time of the light.",
+      Effect::live);
 }
 
 /// The method of late registration (docs/method.md#register).
@@ -313,17 +317,20 @@ struct Cascade {
 template <class Visitor>
 void describe(Visitor& visitor, Cascade& cascade) {
   visitor.section("predict", cascade.predict,
-                  "Prediction of the hand's pose at the time of the light.");
-  visitor.section("skin", cascade.skin, "Fit of the drawn hand to the pose.");
-  visitor.section("filter", cascade.filter,
-                  "Prediction of the landmarks at the time of the light.");
-  visitor.section("correct", cascade.correct, "Motion of the drawing onto the landmarks.");
+                  "Prediction of the hand's pose at the time of the light.", Effect::live);
+  visitor.section("skin", cascade.skin, "Fit of the drawn hand to the pose.", Effect::live);
+  visitor.section("filter", cascade.filter, "Prediction of the landmarks at the time of the light.",
+                  Effect::live);
+  visitor.section("correct", cascade.correct, "Motion of the drawing onto the landmarks.",
+                  Effect::live);
   visitor.section("mask", cascade.mask, "The pixels of the camera image that show the hand.");
   visitor.section("register", cascade.registration,
-                  "Late registration with the newest camera image.");
+                  "Late registration with the newest camera image.", Effect::live);
   visitor.section("fill", cascade.fill,
-                  "Removal of light beside the hand, and fill of parts without light.");
-  visitor.section("ladder", cascade.ladder, "Choice of the cheapest correction that suffices.");
+                  "Removal of light beside the hand, and fill of parts without light.",
+                  Effect::live);
+  visitor.section("ladder", cascade.ladder, "Choice of the cheapest correction that suffices.",
+                  Effect::live);
 }
 
 }  // namespace handcast::config

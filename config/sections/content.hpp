@@ -17,6 +17,7 @@ struct Content {
   double rate_hz = 60;
   int width_px = 640;
   int height_px = 400;
+  std::string sound = "default";
   double shading = 0.0;
   bool smooth = true;
   std::vector<double> gravity{0, 1, 0};
@@ -45,6 +46,9 @@ void describe(Visitor& visitor, Content& content) {
                 "proportions 8:5.");
   visitor.field("height_px", content.height_px, between(128, 2048, "px"),
                 "Height of the pictures.");
+  visitor.field("sound", content.sound,
+                "The sound device that shaders with an input of sound hear, by its ALSA name "
+                "(`arecord -L` lists them); PipeWire and PulseAudio are \"default\".");
   visitor.field(
       "shading", content.shading, between(0, 1),
       "Strength of the shading by a light that shines along the camera's axis. 0: no shading.",
@@ -52,8 +56,7 @@ void describe(Visitor& visitor, Content& content) {
   visitor.field(
       "smooth", content.smooth,
       "Pictures are filtered, and pixels on an edge are lit in part. Off: saves some time "
-      "in each frame, but fine lines break up and edges have steps.",
-      Effect::live);
+      "in each frame, but fine lines break up and edges have steps.");
   visitor.field("gravity", content.gravity, between(-1, 1),
                 "Down, for content that reacts to it: a direction in the space of the camera, x to "
                 "the right in its image, y down, z away from it. [0, 0, 1] for a camera that looks "

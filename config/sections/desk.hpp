@@ -12,6 +12,7 @@ namespace handcast::config {
 struct DeskOsc {
   std::string listen;
   std::vector<std::string> send;
+  std::vector<std::string> tuio;
   double rate_hz = 60;
   int query_port = 0;
 };
@@ -23,6 +24,9 @@ void describe(Visitor& visitor, DeskOsc& osc) {
                 "from every computer of the network. Empty: nowhere.");
   visitor.field("send", osc.send,
                 "Where joints, gestures and changes are sent, e.g. [\"127.0.0.1:9001\"].");
+  visitor.field("tuio", osc.tuio,
+                "Where the finger tips are sent by TUIO 1.1 as cursors (/tuio/2Dcur), e.g. "
+                "[\"127.0.0.1:3333\"].");
   visitor.field("rate_hz", osc.rate_hz, between(1, 240, "Hz"), "How often joints are sent.");
   visitor.field("query_port", osc.query_port, between(0, 65535),
                 "The TCP port at which OSCQuery describes the addresses, on the address of "

@@ -24,8 +24,9 @@
 ///                                                        and their descriptors
 ///   {"verb":"history","seconds":10}                      {"ok":true} and the descriptor of a
 ///                                                        snapshot (record/history.hpp)
-///   {"verb":"rig"}                                       {"ok":true,"rig":"..."}: the rig as it
-///                                                        runs, as TOML, all paths absolute
+///   {"verb":"rig"}                                       {"ok":true,"rig":"...","file":"..."}: the
+///                                                        rig as it runs, as TOML, all paths
+///                                                        absolute; and the rig file
 ///
 /// Descriptors come with the first byte of the answer (SCM_RIGHTS). The answer to what cannot be
 /// done is {"ok":false,"error":"one sentence"}.

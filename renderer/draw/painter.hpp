@@ -81,6 +81,9 @@ class Painter {
   virtual FillCounts fill(View<const std::uint8_t> mask, const config::Fill& settings,
                           Rect region) = 0;
 
+  /// Removes all light inside `areas`.
+  virtual void darken(std::span<const Rect> areas, Rect region) = 0;
+
   /// The image after the last pass: RGBA8, alpha 0 where it is dark, 255 inside the hand. Valid
   /// until the next pass.
   virtual View<const std::uint32_t> colour() = 0;

@@ -29,6 +29,9 @@ class LandmarkTrack {
   /// Without detections. `oracle`: see make_landmark_filter().
   explicit LandmarkTrack(const config::Filter& settings, LandmarkOracle oracle = {})
       : filter_(make_landmark_filter(settings, std::move(oracle))) {}
+  /// Filters with other settings, which are not "ideal", from now on: begins with the next
+  /// detection.
+  void adjust(const config::Filter& settings) { filter_ = make_landmark_filter(settings, {}); }
 
   /// Reports the result of HandTrack::push() for a sample that arrived at `now_ns`.
   void tracker_sample(std::int64_t now_ns, PoseHistory::Pushed pushed);

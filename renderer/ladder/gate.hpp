@@ -56,6 +56,8 @@ class Gate {
  public:
   /// Copies the settings.
   explicit Gate(const config::Ladder& settings) : settings_(settings) {}
+  /// Chooses by other settings from now on.
+  void adjust(const config::Ladder& settings) { settings_ = settings; }
 
   /// The rung for the frame at `target_ns`. Call it once per frame.
   Rung choose(std::int64_t target_ns, const Evidence& evidence);

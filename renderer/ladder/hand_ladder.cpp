@@ -40,12 +40,17 @@ void follow(std::optional<float>& smooth, std::optional<float> value) {
 
 }  // namespace
 
-HandLadder::HandLadder(const config::Cascade& settings)
-    : settings_(settings),
-      automatic_(settings.ladder.rung == config::RungChoice::automatic),
-      fixed_(held_rung(settings.ladder.rung)),
-      with_tracker_(moves_with_tracker(settings.filter)),
-      gate_(settings.ladder) {}
+HandLadder::HandLadder(const config::Cascade& settings) : gate_(settings.ladder) {
+  adjust(settings);
+}
+
+void HandLadder::adjust(const config::Cascade& settings) {
+  settings_ = settings;
+  automatic_ = settings.ladder.rung == config::RungChoice::automatic;
+  fixed_ = held_rung(settings.ladder.rung);
+  with_tracker_ = moves_with_tracker(settings.filter);
+  gate_.adjust(settings.ladder);
+}
 
 void HandLadder::detection(const HandTrack& track, std::int64_t origin_ns,
                            const msg::HandLandmarks& seen) {

@@ -37,6 +37,8 @@ class HandLadder {
  public:
   /// Without evidence. Copies the settings.
   explicit HandLadder(const config::Cascade& settings);
+  /// Uses other settings from now on, with the same evidence.
+  void adjust(const config::Cascade& settings);
 
   /// Measures the error of Q̂ by a detection. Call it before LandmarkTrack::detection(), while Q̂
   /// does not depend on this detection.

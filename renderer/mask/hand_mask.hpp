@@ -54,6 +54,11 @@ class HandMask {
   /// has shares of pixels at its edges.
   HandMask(const config::Mask& settings, const calib::Calibration& calibration,
            bool smooth = false);
+  /// Uses other settings for the images from now on.
+  void adjust(const config::Mask& settings) {
+    settings_ = settings;
+    finder_.adjust(settings);
+  }
 
   /// Finds the hands in an image. In the image of the last call, hands that have hardly moved are
   /// not searched again.

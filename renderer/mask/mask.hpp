@@ -137,6 +137,8 @@ class MaskFinder {
  public:
   /// Copies the settings.
   explicit MaskFinder(const config::Mask& settings) : settings_(settings) {}
+  /// Uses other settings from now on.
+  void adjust(const config::Mask& settings) { settings_ = settings; }
 
   /// Allocates the memory for images of this size in pixels.
   void reserve(int width, int height);

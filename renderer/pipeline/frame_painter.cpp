@@ -39,9 +39,12 @@ FillCounts FramePainter::paint(const FrameDrawing& drawing, StageClock& stages) 
     painter_->warp(*drawing.grid, drawing.source, drawing.region);
     stages.mark(Stage::warp);
   }
-  if (drawing.mask.data == nullptr) return {};
-  const FillCounts counts = painter_->fill(drawing.mask, settings_, drawing.region);
-  stages.mark(Stage::fill);
+  FillCounts counts;
+  if (drawing.mask.data != nullptr) {
+    counts = painter_->fill(drawing.mask, settings_, drawing.region);
+    stages.mark(Stage::fill);
+  }
+  if (!dark_.empty()) painter_->darken(dark_, drawing.region);
   return counts;
 }
 

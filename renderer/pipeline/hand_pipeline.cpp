@@ -79,6 +79,15 @@ Result<HandPipeline> HandPipeline::load(Side side, const config::Cascade& settin
                       MipChain(*texture, content.smooth), std::move(oracle));
 }
 
+void HandPipeline::adjust(const config::Cascade& settings) {
+  const bool is_other_filter = filter_of(settings) != filter_of(settings_);
+  settings_ = settings;
+  auto& motion = states_.motion;
+  motion.track.adjust(settings.predict);
+  if (is_other_filter) motion.landmarks.adjust(filter_of(settings));
+  motion.ladder.adjust(settings);
+}
+
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
   if (!is_plausible(pose, calibration_.camera_from_tracker)) return;
   auto& [reports, motion, light, shape] = states_;

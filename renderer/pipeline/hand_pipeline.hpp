@@ -93,6 +93,9 @@ class HandPipeline {
                                    const config::Content& content, const config::Hand& hand,
                                    const calib::Calibration& calibration, LandmarkOracle oracle);
 
+  /// See Pipeline::adjust().
+  void adjust(const config::Cascade& settings);
+
   /// Which hand it is.
   Side side() const { return side_; }
 

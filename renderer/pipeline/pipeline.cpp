@@ -68,6 +68,15 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
       late_(registration_of(settings), settings.filter, calibration),
       painter_(std::move(painter), settings.fill, screen_.x1, screen_.y1) {}
 
+void Pipeline::adjust(const config::Cascade& cascade, const config::Content& content) {
+  settings_ = cascade;
+  shading_ = static_cast<float>(content.shading);
+  for (auto& hand : both_) hand.adjust(cascade);
+  mask_.adjust(cascade.mask);
+  late_.adjust(registration_of(cascade), cascade.filter);
+  painter_.adjust(cascade.fill);
+}
+
 void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {
   const std::int64_t origin_ns = reported.header.origin_ns;
   if (is_early(now_ns, origin_ns)) return;

@@ -41,6 +41,11 @@ class FramePainter {
   FramePainter(std::unique_ptr<Painter> painter, const config::Fill& settings, int width_px,
                int height_px);
 
+  /// Fills by other settings from now on.
+  void adjust(const config::Fill& settings) { settings_ = settings; }
+  /// Keeps these rectangles dark from now on, projector px.
+  void keep_dark(std::vector<Rect> areas) { dark_ = std::move(areas); }
+
   /// Sets colour, device, fill and, if it is shown, the surface of `frame`. Marks the stages.
   void draw(const FrameDrawing& drawing, StageClock& stages, Frame& frame);
 
@@ -59,6 +64,7 @@ class FramePainter {
   config::Fill settings_;
   int width_px_, height_px_;
   bool shows_surface_ = false;
+  std::vector<Rect> dark_;  ///< projector px
 };
 
 /// The whole cascade: sensor messages in, one image for the projector out. Its only inputs are
@@ -81,6 +87,11 @@ class Pipeline {
                                                   const Oracle& oracle = {},
                                                   std::unique_ptr<Painter> painter = nullptr);
 
+  /// Uses other settings from the next frame on: all live ones of the cascade, whose filter must
+  /// not be "ideal", and content.shading. What was learned stays; a filter whose settings change
+  /// begins with the next detection.
+  void adjust(const config::Cascade& cascade, const config::Content& content);
+
   /// Takes a message that arrived at `now_ns`. A message with an origin more than 50 ms later than
   /// that is dropped: all messages until its origin would count as older. So is a pose that is not
   /// plausible (is_plausible()).
@@ -94,6 +105,9 @@ class Pipeline {
   void wear(Side side, const MipView& picture) {
     both_[static_cast<std::size_t>(side)].wear(picture);
   }
+
+  /// Keeps these rectangles dark from now on, whatever is drawn; projector px.
+  void keep_dark(std::vector<Rect> areas) { painter_.keep_dark(std::move(areas)); }
 
   /// Draws the frame whose photons arrive at `target_ns`. `camera`: the newest image, or none; an
   /// image more than 50 ms later than `now_ns` is ignored. Without hands the frame is dark and its

@@ -25,6 +25,8 @@ class HandTrack {
   /// Without samples. Copies both arguments.
   HandTrack(const config::Predict& settings, const calib::Calibration& calibration)
       : calibration_(calibration), history_(settings) {}
+  /// Predicts with other settings from now on.
+  void adjust(const config::Predict& settings) { history_.adjust(settings); }
 
   /// Adds a tracker sample of this hand that was taken at `origin_ns` and arrived at `now_ns`.
   PoseHistory::Pushed push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose);

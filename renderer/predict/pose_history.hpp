@@ -22,6 +22,8 @@ class PoseHistory {
  public:
   /// Without samples. `span_ns`: samples older than the newest by more than this are dropped.
   explicit PoseHistory(const config::Predict& settings, std::int64_t span_ns = 250'000'000);
+  /// Predicts with other settings from now on.
+  void adjust(const config::Predict& settings) { settings_ = settings; }
 
   /// How a sample relates to the ones before it.
   enum class Pushed {

@@ -65,6 +65,13 @@ LateRegistration::LateRegistration(const config::Registration& settings,
       blends_{JumpBlend(filter.blend_ms, filter.blend_px),
               JumpBlend(filter.blend_ms, filter.blend_px)} {}
 
+void LateRegistration::adjust(const config::Registration& settings, const config::Filter& filter) {
+  settings_ = settings;
+  registration_ = Registration(static_cast<float>(settings.limit_px));
+  if (on()) outlines_.resize(kOutlines);
+  blends_.fill(JumpBlend(filter.blend_ms, filter.blend_px));
+}
+
 const LateRegistration::Outline* LateRegistration::anchor_before(std::int64_t time_ns) const {
   const Outline* newest = nullptr;
   for (const Outline& outline : outlines_)

@@ -44,6 +44,8 @@ class LateRegistration {
   /// Without images. Uses limit_px and method of `settings`, blend_ms and blend_px of `filter`.
   LateRegistration(const config::Registration& settings, const config::Filter& filter,
                    const calib::Calibration& calibration);
+  /// Uses other settings from now on, with the same images.
+  void adjust(const config::Registration& settings, const config::Filter& filter);
 
   /// True if the settings switch late registration on.
   bool on() const { return settings_.method == config::RegisterMethod::mask; }

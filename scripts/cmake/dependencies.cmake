@@ -100,7 +100,7 @@ handcast_feature(WINDOW "light in a window (libglfw3-dev libopengl-dev libxrandr
 
 pkg_check_modules(alsa QUIET IMPORTED_TARGET alsa)
 handcast_found(found alsa_FOUND)
-handcast_feature(ALSA "delay of the light by a photodiode on a sound card (libasound2-dev)" ${found})
+handcast_feature(ALSA "delay of the light by a photodiode on a sound card, sound for content (libasound2-dev)" ${found})
 
 pkg_check_modules(drm QUIET IMPORTED_TARGET libdrm)
 handcast_found(found drm_FOUND)

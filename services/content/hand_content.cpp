@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/content/hand_content.hpp"
-
 #include <fmt/format.h>
 
 #include <utility>
@@ -8,6 +6,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "renderer/base/mip_chain.hpp"
+#include "services/content/contents.hpp"
 
 namespace handcast::content {
 namespace {
@@ -45,21 +44,25 @@ Result<void> HandContent::change(const std::string& content, std::string_view tr
   return {};
 }
 
-void HandContent::start() {
-  const auto& content = content_of_settings();
+void HandContent::start(const std::string& content) {
   const auto shown = change(content, "cut", 0);
   if (shown) return;
   (void)change("builtin:white", "cut", 0);
   note_fault(shown.error());
 }
 
-void HandContent::obey(const msg::ContentCommand& command) {
-  if (!command.is_for(like_.side)) return;
-  const std::string content(command.content.view()), transition(command.transition.view());
+bool HandContent::adjust(const config::Content& settings, std::uint64_t change) {
+  const auto before = content_of_settings();
+  settings_ = settings;
+  state_.command = change;
+  return content_of_settings() != before;
+}
+
+void HandContent::obey(const config::Transition& transition) {
+  const auto& content = content_of_settings();
   const auto shown =
-      change(content, transition.empty() ? settings_.transition : transition,
-             command.transition_s < 0 ? settings_.transition_s : command.transition_s);
-  state_.command = command.header.frame_id;
+      change(content, transition.name.empty() ? settings_.transition : transition.name,
+             transition.seconds < 0 ? settings_.transition_s : transition.seconds);
   if (shown)
     log::info("{}: {}", name_of(like_.side), printable(content));
   else

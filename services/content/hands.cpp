@@ -4,14 +4,13 @@
 #include <utility>
 
 #include "renderer/base/joint_math.hpp"
+#include "renderer/hand/hand_shape.hpp"
 #include "renderer/skin/skinning.hpp"
 
 namespace handcast::content {
 namespace {
 
-constexpr int kPalmJoint = 0, kWristJoint = 1, kThumbTip = 5, kIndexTip = 10;
-constexpr std::array<int, 4> kKnuckles{7, 12, 17, 22};  ///< index to little finger
-constexpr int kFromKnuckleToPip = 1, kFromKnuckleToTip = 3;
+constexpr int kPalmJoint = 0, kWristJoint = 1;
 
 /// A hand with less is reported, but not seen: it is not drawn, either.
 constexpr float kLeastConfidence = 0.1f;
@@ -19,65 +18,16 @@ constexpr float kLeastConfidence = 0.1f;
 constexpr std::int64_t kEarliest_ns = 50'000'000;
 constexpr std::int64_t kSmoothed_ns = 50'000'000;  ///< of the velocity
 
-float smooth(float from, float to, float value) { return glm::smoothstep(from, to, value); }
-
-/// The axes of a palm as columns, in camera space: x to the right, y out of the back, z to the arm.
-glm::mat3 palm_axes_of(const HandState& hand) {
-  glm::vec3 middle(0);
-  for (const int knuckle : kKnuckles) middle += 0.25f * hand.joints_m[knuckle];
-  glm::vec3 to_thumb = hand.joints_m[kKnuckles.front()] - hand.joints_m[kKnuckles.back()];
-  const glm::vec3 to_arm = hand.joints_m[kWristJoint] - middle;
-  if (hand.side == Side::right) to_thumb = -to_thumb;
-  const glm::vec3 back = glm::cross(to_arm, to_thumb);
-  const float area = glm::length(back), length = glm::length(to_arm);
-  if (area < 1e-8f || length < 1e-4f) return {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
-  const glm::vec3 y = back / area, z = to_arm / length;
-  return {glm::cross(y, z), y, z};
-}
-
-/// The length of the way from the wrist to a fingertip along its joints, the metacarpal left out.
-float way_m(const HandState& hand, int knuckle) {
-  float way = glm::distance(hand.joints_m[kWristJoint], hand.joints_m[knuckle]);
-  for (int joint = knuckle; joint < knuckle + kFromKnuckleToTip; ++joint)
-    way += glm::distance(hand.joints_m[joint], hand.joints_m[joint + 1]);
-  return way;
-}
-
-float ratio(float part, float whole) { return whole > 1e-4f ? part / whole : 0; }
-
-float curl_of(const HandState& hand) {
-  float reach = 0;
-  for (const int knuckle : kKnuckles)
-    reach += 0.25f * ratio(glm::distance(hand.joints_m[kWristJoint],
-                                         hand.joints_m[knuckle + kFromKnuckleToTip]),
-                           way_m(hand, knuckle));
-  return 1 - smooth(0.45f, 0.95f, reach);
-}
-
-float spread_of(const HandState& hand) {
-  const auto across = [&](int from_knuckle) {
-    return glm::distance(hand.joints_m[kKnuckles.front() + from_knuckle],
-                         hand.joints_m[kKnuckles.back() + from_knuckle]);
-  };
-  return smooth(1.05f, 1.5f, ratio(across(kFromKnuckleToPip), across(0)));
-}
-
-float pinch_of(const HandState& hand) {
-  const float size_m = glm::distance(hand.joints_m[kWristJoint], hand.joints_m[kKnuckles[1]]);
-  return 1 -
-         smooth(0.2f, 0.65f,
-                ratio(glm::distance(hand.joints_m[kThumbTip], hand.joints_m[kIndexTip]), size_m));
-}
-
 }  // namespace
 
 void derive(HandState& hand, const glm::vec3& down) {
-  const glm::mat3 axes = palm_axes_of(hand);
+  const glm::mat3 axes = renderer::palm_axes(hand.joints_m, hand.side);
+  const auto shape = renderer::shape_of(hand.joints_m);
   hand.palm_normal = -axes[1];
   hand.gravity = glm::transpose(axes) * glm::normalize(down);
-  hand.pinch = pinch_of(hand);
-  hand.spread = spread_of(hand);
-  hand.curl = curl_of(hand);
+  hand.pinch = shape.pinch;
+  hand.spread = shape.spread;
+  hand.curl = shape.curl;
 }
 
 Result<Hands> Hands::load(const config::Rig& rig, const calib::Calibration& calibration) {
@@ -97,6 +47,13 @@ Hands::Hands(std::array<renderer::HandMesh, 2> meshes, const config::Rig& rig,
     renderer::BoneFit bone_fit(mesh);
     hands_.push_back({std::move(mesh), renderer::PoseHistory(rig.cascade.predict), bone_fit});
   }
+}
+
+void Hands::adjust(const config::Rig& rig) {
+  skin_ = rig.cascade.skin;
+  const auto& down = rig.content.gravity;
+  down_ = {down[0], down[1], down[2]};
+  for (Hand& hand : hands_) hand.history.adjust(rig.cascade.predict);
 }
 
 void Hands::push(const msg::HandPoses& poses) {

@@ -21,15 +21,9 @@ namespace handcast::content {
 /// Left and right.
 using BothHands = std::array<HandState, 2>;
 
-/// Fills what HandState derives from its side and its joints. All of it is independent of the size
-/// of the hand: L is the distance from the wrist to the middle knuckle, S is smoothstep, which is 0
-/// up to its first and 1 from its second number on.
+/// Fills what HandState derives from its side and its joints (renderer::shape_of(),
+/// renderer::palm_axes()).
 ///
-/// - pinch: 1 - S(0.2, 0.65) of the distance of the tips of thumb and index finger by L.
-/// - spread: S(1.05, 1.5) of the distance of the middle joints (PIP) of index and little finger by
-///   that of their knuckles. Fingers that bend count as closed.
-/// - curl: 1 - S(0.45, 0.95) of the mean, over the fingers without the thumb, of the distance from
-///   the wrist to the tip by the length of the way along the joints.
 /// - palm_normal: at right angles to the palm's axis, from the wrist to the mean of the knuckles,
 ///   and to the line from the knuckle of the little finger to that of the index finger.
 /// - gravity: `down` (camera space, not zero) in the axes of the palm.
@@ -43,6 +37,9 @@ class Hands {
   /// With the meshes of the left and of the right hand. Copies its arguments.
   Hands(std::array<renderer::HandMesh, 2> meshes, const config::Rig& rig,
         const calib::Calibration& calibration);
+
+  /// Uses other settings from now on.
+  void adjust(const config::Rig& rig);
 
   /// Adds a tracker sample. One that claims to be from the future is ignored, as is a hand of low
   /// confidence; exchanged sides are corrected as the projector does.

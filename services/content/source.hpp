@@ -148,8 +148,11 @@ struct Opening {
   /// The hands that are drawn, left and right: for their layouts. Outlive the source.
   std::array<const renderer::HandMesh*, 2> meshes{};
   Side side = Side::left;  ///< the hand that wears it
+  /// Of the rig. Outlives the source; null: that of calib::reference_rig().
+  const calib::Calibration* calibration = nullptr;
   /// Gives the ring of a stream of the rig ("guest.left"). Empty: there is no rig.
   std::function<Result<ipc::Segment>(std::string_view stream)> ring{};
+  std::string sound = "default";  ///< ALSA's name of the device that is heard
 };
 
 /// A kind of source.

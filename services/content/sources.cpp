@@ -23,6 +23,7 @@ Result<std::unique_ptr<Source>> open_hand(const Opening&);
 Result<std::unique_ptr<Source>> open_shadertoy(const Opening&);
 Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
 Result<std::unique_ptr<Source>> open_program(const Opening&);
+Result<std::unique_ptr<Source>> open_view(const Opening&);
 
 static constexpr SourceKind kKinds[] = {
     {"look", "One of handcast's own looks, by its name.", open_look},
@@ -41,6 +42,7 @@ static constexpr SourceKind kKinds[] = {
     {"hand", "What the camera sees of the hand.", open_hand},
     {"shadertoy", "A shader by the conventions of Shadertoy.", open_shadertoy},
     {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
+    {"view", "A picture as the projector sees it, or what is below, put onto the hand.", open_view},
     {"program", "The pictures of any other program, by handcast.h.", open_program},
 };
 

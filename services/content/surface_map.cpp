@@ -57,7 +57,7 @@ SurfaceMap::SurfaceMap(const renderer::HandMesh& hand, int width, int height) {
       empty_.push_back(static_cast<std::uint32_t>(i));
   }
   renderer::cpu::NearestPixel nearest;
-  for (const auto& way : nearest.find(on.view(), off.view(), kPadding))
+  for (const auto& way : nearest.find(on.view(), off.view(), padding_of(width)))
     copies_.push_back({static_cast<std::uint32_t>(way.y * width + way.x),
                        static_cast<std::uint32_t>((way.y + way.dy) * width + way.x + way.dx)});
 }

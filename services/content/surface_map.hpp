@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -28,8 +29,9 @@ struct SurfaceTexel {
 /// Where each texel of a texture lies on the surface of a hand, however the hand is posed.
 class SurfaceMap {
  public:
-  /// How far pad() continues a chart, texels. The fill and the mip levels look up texels there.
-  static constexpr int kPadding = 8;
+  /// How far pad() continues a chart, texels: the fill and the mip levels look up texels there. The
+  /// fill looks farther in a larger texture; see bench_frame_seams.
+  static int padding_of(int width) { return std::clamp(width / 32, 8, 32); }
 
   /// Of a texture of the given size.
   SurfaceMap(const renderer::HandMesh& hand, int width, int height);

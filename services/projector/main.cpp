@@ -45,11 +45,15 @@ static void run_projector(service::Context& context) {
   projector::TestPictures test_pictures(must(context.reader<msg::TestPicture>(msg::kTestPictures)),
                                         calibration.projector.width_px,
                                         calibration.projector.height_px);
-  projector::Brightness brightness(rig.projector, context.epoch_ns());
+  projector::Brightness brightness(rig.projector, rig.light, context.epoch_ns());
+  const auto live_settings = must(context.live_settings());
+  projector::LiveLight live(*live_settings, rig, *pipeline, brightness,
+                            calibration.projector.width_px, calibration.projector.height_px);
   auto projections = must(context.writer<msg::Projection>("projection.frames"));
   auto* const show = rig.projector.packing == config::Packing::none ? projector::show_frames
                                                                     : projector::show_sub_frames;
-  show(context, {*pipeline, inputs, test_pictures, *projector, brightness, std::move(projections)});
+  show(context,
+       {*pipeline, inputs, test_pictures, *projector, brightness, live, std::move(projections)});
 }
 
 /// The back end is not opened: it would write files or light up.
@@ -66,7 +70,7 @@ int main(int argc, char** argv) {
        .publishes = {"projection.frames"},
        .subscribes = {"camera.frames", "pose.hands", "landmarks.hands", "content.left",
                       "content.right", std::string(msg::kTestPictures)},
-       .settings = {"projector", "content.shading", "content.smooth", "hand", "cascade"},
+       .settings = {"projector", "light", "content.shading", "content.smooth", "hand", "cascade"},
        .backends = service::describe_rows(projector::projector_backends())},
       argc, argv, run_projector, check_projector);
 }

@@ -5,6 +5,7 @@
 #include "renderer/pipeline/pipeline.hpp"
 #include "services/projector/brightness.hpp"
 #include "services/projector/inputs.hpp"
+#include "services/projector/live_light.hpp"
 #include "services/projector/projector.hpp"
 #include "services/projector/test_pictures.hpp"
 #include "services/runtime/context.hpp"
@@ -18,6 +19,7 @@ struct Show {
   TestPictures& test_pictures;
   Projector& projector;
   Brightness& brightness;
+  LiveLight& live;
   ipc::Writer<msg::Projection> projections;
 };
 

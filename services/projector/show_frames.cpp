@@ -9,7 +9,7 @@ namespace handcast::projector {
 
 void show_frames(service::Context& context, Show show) {
   using namespace std::chrono_literals;
-  const auto& settings = context.rig().projector;
+  auto settings = context.rig().projector;
   Pacer pacer(settings.rate_hz);
   Horizon horizon(settings);
   LastLight last_light(context, show.brightness);
@@ -17,7 +17,10 @@ void show_frames(service::Context& context, Show show) {
   context.ready();
   const auto running = [&] { return last_light.goes_on(); };
   std::int64_t next_ns = pacer.next_ns(now_ns());
+  renderer::Frame frame;
+  bool has_frame = false;
   for (std::uint64_t frame_id = 0; sleep_while(running, next_ns); ++frame_id) {
+    if (show.live.follow(now_ns())) settings = *show.live.settings();
     const auto image_deadline = Deadline::at_ns(now_ns() + ms_to_ns(settings.frame_wait_ms));
     if (const auto delivered = show.inputs.deliver(show.pipeline, image_deadline); !delivered)
       context.tolerate(delivered.error());
@@ -26,8 +29,11 @@ void show_frames(service::Context& context, Show show) {
     const std::int64_t target_ns = horizon.target_ns(begin_ns);
     const auto* picture = show.test_pictures.at(begin_ns, target_ns);
     const DelayMeter meter;
-    auto frame =
-        picture ? *picture : show.pipeline.render(begin_ns, target_ns, show.inputs.image());
+    const bool is_frozen = show.live.is_frozen() && has_frame && !picture;
+    if (!is_frozen)
+      frame = picture ? *picture : show.pipeline.render(begin_ns, target_ns, show.inputs.image());
+    frame.target_ns = target_ns;
+    has_frame = !picture;
     const auto delay = meter.delay();
     const auto times =
         show.projector.present(frame, frame_id, show.brightness.at(now_ns()), Deadline::in(50ms));
@@ -41,6 +47,7 @@ void show_frames(service::Context& context, Show show) {
     last_light.presented();
     horizon.learn(begin_ns, *times);
     publish_projection(frame, frame_id, *times, show.projections);
+    if (is_frozen) continue;
     context.mark({frame_id, frame.made_from.image_ns}, TimeSheet(frame.stages, *times, delay),
                  frame.made_from);
   }

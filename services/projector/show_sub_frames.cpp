@@ -14,10 +14,10 @@
 namespace handcast::projector {
 namespace {
 
-std::unique_ptr<renderer::Packer> packer_for(const service::Context& context) {
+std::unique_ptr<renderer::Packer> packer_for(const service::Context& context,
+                                             const config::Projector& settings) {
   const auto output = calib::output_of(context.calibration(), context.rig().projector.packing);
-  return renderer::make_packer(context.rig().projector, output.projector.width_px,
-                               output.projector.height_px);
+  return renderer::make_packer(settings, output.projector.width_px, output.projector.height_px);
 }
 
 /// The levels of a packed frame are those of the projector.
@@ -35,7 +35,7 @@ class SubFrameLoop {
       : context_(context),
         show_(std::move(show)),
         last_light_(context, show_.brightness),
-        packer_(packer_for(context)),
+        packer_(packer_for(context, context.rig().projector)),
         plan_(context.rig().projector),
         messages_(std::move(show_.projections),
                   [&context](const auto& header, auto stages, const auto& made_from) {
@@ -51,6 +51,7 @@ class SubFrameLoop {
   /// Draws the sub-frames. False if the service ends.
   bool draw_all() {
     plan_.start(now_ns());
+    if (show_.live.follow(now_ns())) packer_ = packer_for(context_, *show_.live.settings());
     packer_->begin(show_.brightness.fade_at(now_ns()));
     renderer::Frame frame;
     while (const auto next = plan_.next(now_ns())) {
@@ -72,13 +73,15 @@ class SubFrameLoop {
     const std::int64_t begin_ns = now_ns();
     const auto* picture = show_.test_pictures.at(begin_ns, drawing.target_ns);
     const DelayMeter meter;
-    const auto frame =
-        picture ? *picture
-                : show_.pipeline.render(begin_ns, drawing.target_ns, show_.inputs.image());
+    if (!show_.live.is_frozen() || !has_frame_ || picture)
+      frame_ = picture ? *picture
+                       : show_.pipeline.render(begin_ns, drawing.target_ns, show_.inputs.image());
+    frame_.target_ns = drawing.target_ns;
+    has_frame_ = !picture;
     const auto delay = meter.delay();
-    packer_->add(frame.colour, frame.region, drawing.first, drawing.count);
-    messages_.keep(frame, drawing.count, delay);
-    return frame;
+    packer_->add(frame_.colour, frame_.region, drawing.first, drawing.count);
+    messages_.keep(frame_, drawing.count, delay);
+    return frame_;
   }
 
   /// Hands the output frame over. False if the service ends.
@@ -122,6 +125,8 @@ class SubFrameLoop {
   std::unique_ptr<renderer::Packer> packer_;
   SubFramePlan plan_;
   SubFrameMessages messages_;
+  renderer::Frame frame_;  ///< the last one, if has_frame_
+  bool has_frame_ = false;
   bool has_rhythm_ = false;  ///< the projector says when it takes the next output frame
 };
 

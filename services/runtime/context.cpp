@@ -26,12 +26,22 @@ void give_up(const Error& error) {
 Context::Context(const daemon::ServiceDescription& description, config::Rig rig,
                  calib::Calibration calibration)
     : description_(description),
-      rig_(std::move(rig)),
+      filed_(std::move(rig)),
+      rig_(filed_),
       calibration_(calibration),
       supervision_(daemon::Supervision::from_environment(description.name)) {
+  if (supervision_.has_ring(msg::kLiveSettings))
+    if (auto ring = open_segment(msg::kLiveSettings))
+      rig_ = LiveSettings::newest(filed_, std::move(*ring)).rig;
   description_.publishes.push_back(daemon::marks_stream_of(description.name));
   wait_ = config::process_of(rig_, description.name).wait;
   if (!supervision_.is_standby()) open_marks();
+}
+
+Result<std::unique_ptr<LiveSettings>> Context::live_settings() const {
+  auto ring = open_segment(msg::kLiveSettings);
+  if (!ring) return tl::make_unexpected(ring.error());
+  return LiveSettings::follow(filed_, std::move(*ring));
 }
 
 void Context::open_marks() {

@@ -20,6 +20,7 @@
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/reader.hpp"
 #include "ipc/ring/writer.hpp"
+#include "services/runtime/live_settings.hpp"
 
 /// The environment of a daemon: configuration, rings, readiness, heartbeat and stage marks. The
 /// contract with the supervisor is in ipc/daemon/contract.hpp.
@@ -38,8 +39,12 @@ T must(Result<T> result) {
 /// The context of one daemon. One thread.
 class Context {
  public:
-  /// The configuration of the rig.
+  /// The configuration of the rig, with the live settings at the start of this process.
   const config::Rig& rig() const { return rig_; }
+  /// The same as its file has it.
+  const config::Rig& filed() const { return filed_; }
+  /// What people change from now on. Errors: those of ring() and LiveSettings::follow().
+  Result<std::unique_ptr<LiveSettings>> live_settings() const;
   /// The calibration of the rig.
   const calib::Calibration& calibration() const { return calibration_; }
   /// The time of the rig's start, the same for every daemon of the rig: time zero of the twin.
@@ -104,6 +109,7 @@ class Context {
   void open_marks();
 
   daemon::ServiceDescription description_;
+  config::Rig filed_;  ///< as the file has it
   config::Rig rig_;
   calib::Calibration calibration_;
   daemon::Supervision supervision_;

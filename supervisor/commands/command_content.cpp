@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "config/content_chain.hpp"
+#include "config/live/live_board.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/client/stream.hpp"
-#include "ipc/msg/content_command.hpp"
-#include "ipc/ring/writer.hpp"
+#include "ipc/msg/content_state.hpp"
 #include "supervisor/commands/choose_rig.hpp"
 #include "supervisor/commands/verbs.hpp"
 
@@ -42,36 +42,27 @@ std::string looks() {
   return join(names, ", ");
 }
 
-/// The command, with absolute paths. Errors: bad_config (it makes no sense, or is too long).
-Result<msg::ContentCommand> command_of(const Wish& wish) {
-  std::error_code gone;
-  const auto here = std::filesystem::current_path(gone);
-  const auto content = config::resolve_content(wish.content, here);
-  if (!content) return tl::make_unexpected(content.error());
-  msg::ContentCommand command;
-  command.header.frame_id = static_cast<std::uint64_t>(now_ns());
-  command.header.origin_ns = now_ns();
-  command.hands = wish.hand == "both" ? 0b11 : wish.hand == "left" ? 0b01 : 0b10;
-  command.transition_s = static_cast<float>(wish.transition_s);
-  bool fits = command.content.set(*content);
-  if (!wish.transition.empty()) {
-    const auto transition = config::resolve_content(wish.transition, here);
-    if (!transition) return fail_in("--transition", transition.error());
-    fits &= command.transition.set(*transition);
-  }
-  if (!fits) return fail(Errc::bad_config, "the content has more than 4095 characters");
-  return command;
+/// The changes of settings that show what is wished for.
+std::vector<std::string> changes_of(const Wish& wish) {
+  std::vector<std::string> changes;
+  for (const auto hand : kHands)
+    if (wish.hand == "both" || wish.hand == hand)
+      changes.push_back(fmt::format("content.{}={}", hand, wish.content));
+  return changes;
 }
 
-Result<void> send(const std::string& rig, const msg::ContentCommand& command) {
-  auto ring = client::rig_ring(rig, msg::kContentCommands);
-  if (!ring) return tl::make_unexpected(ring.error());
-  // Another command may be on its way.
-  auto writer =
-      ipc::Writer<msg::ContentCommand>::attach(std::move(ring->segment), Deadline::in(2s));
-  if (!writer) return tl::make_unexpected(writer.error());
-  writer->publish(command);
-  return {};
+/// Errors: bad_config (it makes no sense), unavailable. Returns the number of the change.
+Result<std::uint64_t> send(const Wish& wish) {
+  config::Transition transition{wish.transition, wish.transition_s};
+  if (!wish.transition.empty()) {
+    std::error_code gone;
+    auto resolved = config::resolve_content(wish.transition, std::filesystem::current_path(gone));
+    if (!resolved) return fail_in("--transition", resolved.error());
+    transition.name = std::move(*resolved);
+  }
+  auto board = config::LiveBoard::open(wish.rig);
+  if (!board) return tl::make_unexpected(board.error());
+  return board->set(changes_of(wish), "command line", transition);
 }
 
 void print(const msg::ContentState& state, bool as_json) {
@@ -88,8 +79,8 @@ void print(const msg::ContentState& state, bool as_json) {
     fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-/// What the service says about a command. Errors: bad_config (it was refused), timeout (no answer).
-Result<void> wait_for(States& states, const msg::ContentCommand& command) {
+/// What the service says about a change. Errors: bad_config (it was refused), timeout (no answer).
+Result<void> wait_for(States& states, const Wish& wish, std::uint64_t change) {
   const auto until = Deadline::in(kPatience);
   for (;;) {
     const auto state = states.latest(until);
@@ -100,10 +91,10 @@ Result<void> wait_for(States& states, const msg::ContentCommand& command) {
     if (!state) return tl::make_unexpected(state.error());
     std::string faults;
     bool is_done = true;
-    for (const auto side : {msg::Side::left, msg::Side::right}) {
-      const auto& hand = (*state)->hands[static_cast<std::size_t>(side)];
-      if (!command.is_for(side)) continue;
-      is_done &= hand.command >= command.header.frame_id;
+    for (std::size_t i = 0; i < kHands.size(); ++i) {
+      const auto& hand = (*state)->hands[i];
+      if (wish.hand != "both" && wish.hand != kHands[i]) continue;
+      is_done &= hand.command >= change;
       if (faults.find(hand.fault.view()) == faults.npos || faults.empty())
         faults += hand.fault.view();
     }
@@ -123,12 +114,11 @@ int show(const std::string& rig, bool as_json) {
 }
 
 int change(const Wish& wish) {
-  const auto command = command_of(wish);
-  if (!command) return complain(command.error());
   auto states = client::open_stream<msg::ContentState>(wish.rig, "content.state");
   if (!states) return complain(states.error());
-  if (const auto sent = send(wish.rig, *command); !sent) return complain(sent.error());
-  const auto answer = wait_for(*states, *command);
+  const auto change = send(wish);
+  if (!change) return complain(change.error());
+  const auto answer = wait_for(*states, wish, *change);
   return answer ? kExitDone : complain(answer.error());
 }
 

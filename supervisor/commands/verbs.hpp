@@ -55,6 +55,15 @@ int run_trace(const Arguments& arguments);
 int run_latency(const Arguments& arguments);
 int run_content(const Arguments& arguments);
 int run_desk(const Arguments& arguments);
+int run_set(const Arguments& arguments);
+int run_get(const Arguments& arguments);
+int run_watch(const Arguments& arguments);
+int run_undo(const Arguments& arguments);
+int run_save(const Arguments& arguments);
+int run_preset(const Arguments& arguments);
+int run_blackout(const Arguments& arguments);
+int run_freeze(const Arguments& arguments);
+int run_master(const Arguments& arguments);
 int run_top(const Arguments& arguments);
 int run_install_units(const Arguments& arguments);
 /// @}

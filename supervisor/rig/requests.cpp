@@ -13,8 +13,8 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
-#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/guest_picture.hpp"
+#include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
@@ -167,7 +167,7 @@ void give_status(LiveRig& rig, const Reply& reply) {
 int access_to(std::string_view stream) {
   const bool is_for_guests =
       std::ranges::find(msg::kGuestPictures, stream) != msg::kGuestPictures.end();
-  const bool is_for_tools = stream == msg::kTestPictures || stream == msg::kContentCommands;
+  const bool is_for_tools = stream == msg::kTestPictures || stream == msg::kLiveSettings;
   return is_for_guests || is_for_tools ? O_RDWR : O_RDONLY;
 }
 
@@ -199,9 +199,10 @@ void give_history(LiveRig& rig, const control::Request& request, const Reply& re
 
 /// Sends the rig as it runs, swapped back ends included, for tools that need its calibration and
 /// settings.
-void give_rig(const LiveRig& rig, const Reply& reply) {
+void give_rig(const LiveRig& rig, const std::filesystem::path& file, const Reply& reply) {
   auto answer = success();
   answer["rig"] = rig.text();
+  answer["file"] = file.string();
   reply(answer);
 }
 
@@ -233,7 +234,7 @@ void Requests::answer(const control::Request& request, Reply reply) {
     case Verb::history:
       return give_history(rig_, request, reply);
     case Verb::rig:
-      return give_rig(rig_, reply);
+      return give_rig(rig_, host_.rig_file, reply);
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -71,6 +72,7 @@ class Requests {
   struct Host {
     std::function<Result<config::Rig>()> read_file;  ///< reads the rig file
     std::function<void()> stop;                      ///< begins to stop the rig
+    std::filesystem::path rig_file;  ///< absolute; for programs that write beside it
   };
   /// `rig` must outlive the object.
   Requests(LiveRig& rig, Host host);

@@ -43,7 +43,8 @@ RigRunner::RigRunner(const config::Rig& rig, RunOptions options, EventLoop loop)
       requests_(
           rig_,
           {.read_file = [this] { return load_rig_to_apply(options_.rig_file, options_.settings); },
-           .stop = [this] { begin_stop(kExitDone); }}) {
+           .stop = [this] { begin_stop(kExitDone); },
+           .rig_file = std::filesystem::absolute(options_.rig_file)}) {
   rig_.launch.program_folder = options_.program_folder;
   if (const auto address = control::address_of(rig.name)) rig_.launch.rig = address->text;
   rig_.launch.keeper = &keeper_;

@@ -3,12 +3,13 @@
 
 #include "ipc/daemon/contract.hpp"
 #include "ipc/msg/camera_frame.hpp"
-#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/content_picture.hpp"
+#include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/largest_images.hpp"
+#include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/msg/test_picture.hpp"
@@ -53,6 +54,7 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::TestPicture>(std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
                                      msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px,
                                                              msg::kLargestTestPictureHeight_px)),
+      RingSpec::of<msg::LiveSettings>(std::string(msg::kLiveSettings), 8, kNewestOnly),
       guest_ring("guest.left"),
       guest_ring("guest.right"),
   };
@@ -64,7 +66,6 @@ std::vector<ipc::RingSpec> content_streams(std::size_t picture_bytes) {
   return {
       RingSpec::of<msg::ContentPicture>("content.left", kPictureSlots, kNewestOnly, picture_bytes),
       RingSpec::of<msg::ContentPicture>("content.right", kPictureSlots, kNewestOnly, picture_bytes),
-      RingSpec::of<msg::ContentCommand>(std::string(msg::kContentCommands), 16, kWithHistory),
       RingSpec::of<msg::ContentState>("content.state", 8, kNewestOnly),
   };
 }
@@ -85,6 +86,12 @@ void add_second_view(const config::Rig& rig, std::vector<ServiceSpec>& services)
                         .backend = rig.landmarks2.backend,
                         .needs = {has_camera ? "camera2" : "camera"},
                         .instance_of = "landmarks"});
+}
+
+/// Whether the desk has anything to serve.
+bool has_surface(const config::Desk& desk) {
+  return !desk.page.listen.empty() || !desk.osc.listen.empty() || !desk.osc.send.empty() ||
+         !desk.midi.device.empty() || !desk.cues.empty();
 }
 
 ipc::RingSpec marks_of(const ServiceSpec& service) {
@@ -117,6 +124,7 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
   services.push_back({"content", "content.left", "", 0});
   services.back().message_bytes =
       msg::ContentPicture::bytes(rig.content.width_px, rig.content.height_px);
+  if (has_surface(rig.desk)) services.push_back({"desk", "", "", 0});
   if (rig.dlp.backend != "none") {
     services.push_back({"dlp", "", rig.dlp.backend, 0});
     services.back().has_safe_state = true;

@@ -12,11 +12,12 @@
 #include <string_view>
 #include <vector>
 
+#include "config/live/live_board.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/client/rig_ring.hpp"
 #include "ipc/client/stream.hpp"
-#include "ipc/msg/content_command.hpp"
 #include "ipc/msg/content_picture.hpp"
+#include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/msg/stage_mark.hpp"
@@ -76,27 +77,23 @@ Frames watch_frames(double seconds) {
   return frames;
 }
 
-ipc::Writer<msg::ContentCommand> command_writer() {
-  auto ring = client::rig_ring("twin", msg::kContentCommands);
-  if (!ring) give_up(ring.error().what);
-  auto writer = ipc::Writer<msg::ContentCommand>::attach(std::move(ring->segment));
-  if (!writer) give_up(writer.error().what);
-  return std::move(*writer);
+config::LiveBoard board_of_twin() {
+  auto board = config::LiveBoard::open("twin");
+  if (!board) give_up(board.error().what);
+  return std::move(*board);
 }
 
 /// Sends a command and waits for the first picture of it, ms.
-double change_ms(ipc::Writer<msg::ContentCommand>& commands, const std::string& content) {
+double change_ms(config::LiveBoard& board, const std::string& content) {
   auto states = stream_of<msg::ContentState>("content.state");
   auto pictures = stream_of<msg::ContentPicture>("content.left");
-  msg::ContentCommand command;
-  command.header.frame_id = static_cast<std::uint64_t>(now_ns());
-  command.transition_s = 0.3F;
-  command.content.set(content);
+  const std::vector<std::string> changes{"content.left=" + content, "content.right=" + content};
   const auto begin_ns = now_ns();
-  commands.publish(command);
+  const auto change = board.set(changes, "bench", {"fade", 0.3});
+  if (!change) give_up(change.error().what);
   for (const auto until = Deadline::in(10s); !until.passed();) {
     const auto state = states.latest(Deadline::in(1s));
-    if (!state || (*state)->hands[0].command < command.header.frame_id) continue;
+    if (!state || (*state)->hands[0].command < *change) continue;
     if (!(*state)->hands[0].fault.view().empty())
       give_up(std::string((*state)->hands[0].fault.view()));
     const auto picture = pictures.latest(Deadline::in(1s));
@@ -194,12 +191,12 @@ int run(int runs, const char* goals_file) {
     const TwinRig rig(folder, settings_with("builtin:atlas"));
     std::vector<double> first_ms, again_ms;
     {
-      auto commands = command_writer();
+      auto board = board_of_twin();
       for (const auto* look : {"lava", "tiger", "galaxy", "xray", "clock", "circuit"})
-        first_ms.push_back(change_ms(commands, look));
+        first_ms.push_back(change_ms(board, look));
       for (int i = 0; i < 10; ++i)
-        again_ms.push_back(change_ms(commands, i % 2 ? "builtin:checker" : "builtin:skeleton"));
-      change_ms(commands, "program:left");
+        again_ms.push_back(change_ms(board, i % 2 ? "builtin:checker" : "builtin:skeleton"));
+      change_ms(board, "program:left");
     }
     fmt::print("change of a look, median of {}: {:.0f} ms; of a pattern: {:.0f} ms\n",
                first_ms.size(), median(first_ms), median(again_ms));

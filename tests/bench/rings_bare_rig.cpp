@@ -17,8 +17,13 @@ constexpr auto kRigName = "bare";
 constexpr int kPrepare_us = 100'000;  // what a bare standby needs to be prepared, and more
 
 std::vector<std::string> command_of(const std::filesystem::path& folder, bool standby) {
-  std::vector<std::string> words{(folder / "handcast").string(), "up",
-                                 (folder / "rig.toml").string(), "--set", "observer.enabled=false"};
+  std::vector<std::string> words{(folder / "handcast").string(),
+                                 "up",
+                                 (folder / "rig.toml").string(),
+                                 "--set",
+                                 "observer.enabled=false",
+                                 "--set",
+                                 "desk.page.listen="};
   for (const auto& [service, stream] : BareRig::streams())
     words.insert(words.end(), {"--set", fmt::format("{}.process.standby={}", service, standby)});
   return words;

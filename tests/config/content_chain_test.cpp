@@ -147,6 +147,13 @@ TEST(ContentChain, NoTextMakesItFail) {
   }
 }
 
+TEST(ContentChain, AFileInsideAViewIsResolvedToo) {
+  EXPECT_EQ(*resolve_content("view:a.png bake=1 | b.fs", "/show"),
+            "view:/show/a.png bake=1 | /show/b.fs");
+  EXPECT_EQ(*resolve_content("view:film:a.mp4", "/show"), "view:/show/a.mp4");
+  EXPECT_EQ(resolve_content("view:", "/show").error().code, Errc::bad_config);
+}
+
 TEST(ContentChain, FilesAndStillPicturesAreTold) {
   EXPECT_TRUE(is_content_file(one("a.png")));
   EXPECT_TRUE(is_content_file(one("a.mp4")));

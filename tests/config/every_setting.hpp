@@ -48,7 +48,8 @@ inline void change(const Setting& setting) {
             value->push_back(setting.name() == "cores" ? 1 : 0.1);
           }
           if constexpr (std::is_same_v<T, std::vector<std::string>>)
-            value->push_back("a, \"quoted\" [text] = 1");
+            value->push_back(setting.name() == "keep_out" ? "1 2, 3.5 4, -5 6"
+                                                          : "a, \"quoted\" [text] = 1");
           if constexpr (std::is_same_v<T, std::string>)
             *value = setting.path == "name" ? "another_rig"
                                             : "/a \"quoted\" \\ path\twith a tab and a hä\x01";

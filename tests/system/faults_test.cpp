@@ -133,7 +133,7 @@ TEST_F(Faults, AServiceInAnEndlessLoopIsReplaced) {
   const auto programs = scratch_.path() / "bin";
   std::filesystem::create_directory(programs);
   std::filesystem::copy_file(program_folder() / "handcast", programs / "handcast");
-  for (const auto* name : {"camera", "pose", "landmarks", "projector", "content"})
+  for (const auto* name : {"camera", "pose", "landmarks", "projector", "content", "desk"})
     std::filesystem::create_symlink(
         std::filesystem::absolute(program_folder()) / ("handcast-" + std::string(name)),
         programs / ("handcast-" + std::string(name)));

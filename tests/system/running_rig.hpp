@@ -42,8 +42,8 @@ class SystemTest : public testing::Test {
   test::Scratch scratch_;
 };
 
-inline const std::vector<std::string> kServices{"camera",    "pose",    "landmarks",
-                                                "projector", "content", "observer"};
+inline const std::vector<std::string> kServices{"camera",  "pose", "landmarks", "projector",
+                                                "content", "desk", "observer"};
 
 /// The last line of a text.
 std::string last_line(const std::string& text);

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
-#include "ipc/msg/content_command.hpp"
+#include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "tests/system/running_rig.hpp"
@@ -39,7 +39,7 @@ class Security : public SystemTest {
     std::vector<UniqueFd> given;
     for (std::size_t i = 0; answer && i < answer->descriptors.size(); ++i)
       if (const auto& name = answer->object["rings"][i];
-          name != msg::kTestPictures && name != msg::kContentCommands &&
+          name != msg::kTestPictures && name != msg::kLiveSettings &&
           name != msg::kGuestPictures[0] && name != msg::kGuestPictures[1])
         given.push_back(std::move(answer->descriptors[i]));
     return given;

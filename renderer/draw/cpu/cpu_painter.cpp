@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/draw/cpu/cpu_painter.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,15 @@ class CpuPainter final : public Painter {
     if (region.empty() || settings.method == config::FillMethod::none) return {};
     shown_step_ = 0;
     return filler_.fill(mask, settings, region, samplers_, frame_);
+  }
+
+  void darken(std::span<const Rect> areas, Rect region) override {
+    region = region.within(width_, height_);
+    for (const auto& area : areas) {
+      const auto dark = area.overlap(region);
+      for (int y = dark.y0; y < dark.y1; ++y)
+        std::fill(frame_.colour.row(y) + dark.x0, frame_.colour.row(y) + dark.x1, 0);
+    }
   }
 
   View<const std::uint32_t> colour() override { return std::as_const(frame_.colour).view(); }

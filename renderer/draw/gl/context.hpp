@@ -77,6 +77,7 @@ std::vector<DisplayCandidate> display_candidates(const Egl& egl);
   F(CLEARNAMEDFRAMEBUFFERFV, ClearNamedFramebufferfv)         \
   F(CLEARNAMEDFRAMEBUFFERUIV, ClearNamedFramebufferuiv)       \
   F(CLEARTEXIMAGE, ClearTexImage)                             \
+  F(CLEARTEXSUBIMAGE, ClearTexSubImage)                       \
   F(CLIENTWAITSYNC, ClientWaitSync)                           \
   F(CLIPCONTROL, ClipControl)                                 \
   F(COMPILESHADER, CompileShader)                             \

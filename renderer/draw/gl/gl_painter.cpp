@@ -67,6 +67,16 @@ class Painting final : public GlPainter {
     return context_->lost() ? FillCounts{} : filler_.counts();
   }
 
+  void darken(std::span<const Rect> areas, Rect region) override {
+    region = region.within(size_px_.x, size_px_.y);
+    if (region.empty() || !context_->make_current()) return;
+    for (const auto& area : areas)
+      if (const auto dark = area.overlap(region); !dark.empty())
+        context_->gl().ClearTexSubImage(frame_.colour.name(), 0, dark.x0, dark.y0, 0, dark.width(),
+                                        dark.height(), 1, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    read_back_.changed(region);
+  }
+
   View<const std::uint32_t> colour() override { return read_back_.colour(frame_); }
   std::optional<DeviceImage> device_image() override {
     if (!is_shared_ || !context_->make_current()) return {};

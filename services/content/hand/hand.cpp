@@ -5,70 +5,10 @@
 #include <vector>
 
 #include "services/content/settable_source.hpp"
-#include "services/content/surface_map.hpp"
+#include "services/content/unwrap.hpp"
 
 namespace handcast::content {
 namespace {
-
-constexpr int kCoarse_px = 4;          ///< pixels of the image per pixel of the depth buffer
-constexpr float kBehind_m = 0.008f;    ///< that a texel may lie behind the nearest surface
-constexpr float kLeastFacing = 0.15f;  ///< cosine of the angle of view, below which skin is smeared
-
-/// Where the camera sees the vertices of a hand: px of the image as the lens forms it.
-std::vector<glm::vec2> project_all(const calib::CameraModel& lens,
-                                   std::span<const glm::vec3> positions_m) {
-  std::vector<glm::vec2> places;
-  for (const glm::vec3& at : positions_m)
-    places.push_back(at.z > 0.05f ? glm::vec2(lens.distort(lens.project(at))) : glm::vec2(-1e6f));
-  return places;
-}
-
-/// The distance of the nearest surface along the camera's axis, in an image of 1 / kCoarse_px.
-class DepthBuffer {
- public:
-  explicit DepthBuffer(const renderer::GreyView& image)
-      : depth_m_(image.width / kCoarse_px + 1, image.height / kCoarse_px + 1,
-                 std::numeric_limits<float>::max()) {}
-
-  void draw(const renderer::HandMesh& mesh, std::span<const glm::vec2> px,
-            std::span<const glm::vec3> positions_m) {
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const std::array at{px[a] / (1.f * kCoarse_px), px[b] / (1.f * kCoarse_px),
-                          px[c] / (1.f * kCoarse_px)};
-      const std::array depth{positions_m[a].z, positions_m[b].z, positions_m[c].z};
-      fill(at, depth);
-    }
-  }
-  bool hides(const glm::vec2& px, float depth_m) const {
-    return depth_m > depth_m_.at(static_cast<int>(px.x / kCoarse_px + 0.5f),
-                                 static_cast<int>(px.y / kCoarse_px + 0.5f)) +
-                         kBehind_m;
-  }
-
- private:
-  void fill(const std::array<glm::vec2, 3>& at, const std::array<float, 3>& depth_m) {
-    const glm::vec2 ab = at[1] - at[0], ac = at[2] - at[0];
-    const float area = ab.x * ac.y - ab.y * ac.x;
-    const glm::vec2 low = glm::min(at[0], glm::min(at[1], at[2])),
-                    high = glm::max(at[0], glm::max(at[1], at[2]));
-    const glm::vec2 size(depth_m_.width() - 1, depth_m_.height() - 1);
-    if (std::abs(area) < 1e-9f || low.x > size.x || low.y > size.y || high.x < 0 || high.y < 0)
-      return;
-    const glm::ivec2 first(glm::ceil(glm::max(low, glm::vec2(0)))),
-        last(glm::floor(glm::min(high, size)));
-    for (int y = first.y; y <= last.y; ++y)
-      for (int x = first.x; x <= last.x; ++x) {
-        const glm::vec2 way = glm::vec2(x, y) - at[0];
-        const float v = (way.x * ac.y - way.y * ac.x) / area,
-                    w = (ab.x * way.y - ab.y * way.x) / area;
-        if (v < 0 || w < 0 || v + w > 1) continue;
-        const float depth = depth_m[0] * (1 - v - w) + depth_m[1] * v + depth_m[2] * w;
-        depth_m_.at(x, y) = std::min(depth_m_.at(x, y), depth);
-      }
-  }
-
-  renderer::Image<float> depth_m_;
-};
 
 /// The level of an image at a place inside it, interpolated linearly.
 float level_at(const renderer::GreyView& image, const glm::vec2& px) {
@@ -113,28 +53,14 @@ class HandSource final : public SettableSource {
 
   /// Takes the levels of all texels that the camera sees. False if there are none.
   bool look(const CameraView& view) {
-    const HandState& hand = *view.hand;
     const auto& image = view.image.view;
-    if (hand.positions_m.empty() || image.width < 2 || image.height < 2) return false;
-    const auto px = project_all(*view.lens, hand.positions_m);
-    DepthBuffer nearest(image);
-    nearest.draw(*hand.mesh, px, hand.positions_m);
-    if (view.other && !view.other->positions_m.empty())
-      nearest.draw(*view.other->mesh, project_all(*view.lens, view.other->positions_m),
-                   view.other->positions_m);
-    bool has_seen = false;
-    const auto texels = map_.texels();
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-      const glm::vec3 at = texels[i].of(hand.positions_m), normal = texels[i].of(hand.normals);
-      if (-glm::dot(at, normal) < kLeastFacing * glm::length(at)) continue;
-      const glm::vec2 place = texels[i].of(std::span<const glm::vec2>(px));
-      const bool is_inside = place.x >= 0 && place.y >= 0 && place.x <= image.width - 1.f &&
-                             place.y <= image.height - 1.f;
-      if (!is_inside || nearest.hides(place, at.z)) continue;
-      levels_[i] = level_at(image, place);
-      has_seen = true;
-    }
-    return has_seen;
+    if (image.width < 2 || image.height < 2) return false;
+    auto camera = viewer_of(*view.lens);
+    camera.width_px = image.width;
+    camera.height_px = image.height;
+    const auto seen = seen_texels(camera, map_, *view.hand, view.other);
+    for (const auto& [which, px] : seen) levels_[which] = level_at(image, px);
+    return !seen.empty();
   }
 
   void show(renderer::Texture& out) const {

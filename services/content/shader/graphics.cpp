@@ -103,6 +103,16 @@ void Graphics::upload(Texels& texels, renderer::View<const std::uint32_t> pictur
                                 GL_RGBA, GL_UNSIGNED_BYTE, scratch_.data());
 }
 
+void Graphics::upload_levels(Texels& texels, int width, int height, std::span<const float> levels) {
+  if (texels.width != width || texels.height != height) {
+    texels = make_texels(GL_R32F, width, height);
+    for (const GLenum channel : {GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B})
+      functions().TextureParameteri(texels.image.name(), channel, GL_RED);
+  }
+  functions().TextureSubImage2D(texels.image.name(), 0, 0, 0, width, height, GL_RED, GL_FLOAT,
+                                levels.data());
+}
+
 void Graphics::read(const Target& target, renderer::Texture& out) {
   const int width = target.texels.width, height = target.texels.height;
   if (out.width() != width || out.height() != height) out = renderer::Texture(width, height);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "ipc/base/result.hpp"
@@ -47,6 +48,8 @@ class Graphics {
   /// Fills a texture with a picture whose row 0 is at the top; it is made anew if its size differs.
   /// `is_premultiplied`: the shader gets straight alpha.
   void upload(Texels& texels, renderer::View<const std::uint32_t> picture, bool is_premultiplied);
+  /// Fills a texture with levels, from its lowest row up, which shaders read as greys.
+  void upload_levels(Texels& texels, int width, int height, std::span<const float> levels);
   /// Reads a target of straight alpha as a premultiplied picture with row 0 at the top.
   void read(const Target& target, renderer::Texture& out);
   /// Draws the four corners of the picture into a target with the program in use; `clears`: it is

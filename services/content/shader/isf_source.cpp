@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "ipc/base/log.hpp"
@@ -12,6 +13,7 @@
 #include "services/content/settable_source.hpp"
 #include "services/content/shader/file_times.hpp"
 #include "services/content/shader/isf_program.hpp"
+#include "services/content/sound/sound.hpp"
 
 namespace handcast::content {
 namespace {
@@ -27,6 +29,15 @@ constexpr std::string_view kInput = "inputImage", kStart = "startImage", kEnd = 
 /// The image of a pass: what it drew last, and, if it persists, a second one to draw into.
 struct Buffer {
   Target last, next;
+};
+
+/// The samples in an image of sound that states no number of them.
+constexpr int kWaveform = 1024;
+
+struct Ears {
+  SoundListener listener;
+  Spectrum spectrum;
+  explicit Ears(const std::string& device) : listener(device) {}
 };
 
 /// The names that are not set by a person: images that the chain gives, and the time of a
@@ -53,7 +64,8 @@ class IsfSource final : public SettableSource {
         isf_(std::move(isf)),
         width_(opening.width),
         height_(opening.height),
-        files_(isf_.files) {
+        files_(isf_.files),
+        sound_device_(opening.sound) {
     output_ = graphics_->make_target(GL_RGBA8, width_, height_);
   }
 
@@ -85,6 +97,7 @@ class IsfSource final : public SettableSource {
     if (isf_.is_still && this->inputs() == 0 && !is_changed && has_drawn_) return false;
     if (auto usable = graphics_->use(); !usable) return tl::make_unexpected(usable.error());
     upload(inputs);
+    hear();
     isf_.hands->update(*graphics_, moment);
     const Target* last = &output_;
     for (std::size_t i = 0; i < isf_.head.passes.size(); ++i)
@@ -109,6 +122,22 @@ class IsfSource final : public SettableSource {
     if (inputs.size() != 2) return;
     graphics_->upload(images_[std::string(kStart)], inputs[0], true);
     graphics_->upload(images_[std::string(kEnd)], inputs[1], true);
+  }
+
+  /// Fills the images of sound.
+  void hear() {
+    std::optional<Heard> heard;
+    for (const auto& input : isf_.head.inputs) {
+      if (input.type < Type::audio) continue;
+      // Only a shader that is drawn needs the device.
+      if (!ears_) ears_.emplace(sound_device_);
+      if (!heard) heard = ears_->listener.newest();
+      const int all = input.type == Type::audio ? kWaveform : Spectrum::kBins,
+                width = input.most_samples > 0 ? input.most_samples : all;
+      const auto image = input.type == Type::audio ? waveform_of(*heard, width)
+                                                   : ears_->spectrum.image_of(*heard, width);
+      graphics_->upload_levels(images_[input.name()], image.width, image.height, image.levels);
+    }
   }
 
   void set_inputs(const UserProgram& program, const Moment& moment) {
@@ -223,6 +252,8 @@ class IsfSource final : public SettableSource {
   std::map<std::string, Buffer> buffers_;  ///< by their targets
   std::map<std::string, Texels> images_;
   std::set<std::string, std::less<>> events_;  ///< that the next picture sees
+  std::string sound_device_;
+  std::optional<Ears> ears_;  ///< of a shader with sound, from its first picture on
   bool has_drawn_ = false;
 };
 

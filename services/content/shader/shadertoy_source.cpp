@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "renderer/media/picture.hpp"
 #include "services/content/settable_source.hpp"
 #include "services/content/shader/file_times.hpp"
 #include "services/content/shader/hand_view.hpp"
 #include "services/content/shader/shadertoy_text.hpp"
+#include "services/content/sound/sound.hpp"
 
 namespace handcast::content {
 namespace {
@@ -78,7 +80,8 @@ bool is_still_program(const ShadertoyProgram& text, const HandView& hands) {
   const auto words = text.words();
   for (const auto* word : {"iTime", "iGlobalTime", "iTimeDelta", "iFrame", "iDate", "iChannelTime"})
     if (words.contains(word)) return false;
-  return text.parts().size() == 1 && !text.is_filter() && !hands.is_live();
+  return text.parts().size() == 1 && !text.reads(Channel::From::input) &&
+         !text.reads(Channel::From::sound) && !hands.is_live();
 }
 
 class ShadertoySource final : public SettableSource {
@@ -92,9 +95,11 @@ class ShadertoySource final : public SettableSource {
         passes_(std::move(passes)),
         width_(opening.width),
         height_(opening.height),
-        is_filter_(text.is_filter()),
+        is_filter_(text.reads(Channel::From::input)),
+        hears_(text.reads(Channel::From::sound)),
         is_still_(is_still_program(text, *hands_)),
-        files_(text.files) {
+        files_(text.files),
+        sound_device_(opening.sound) {
     output_ = graphics_->make_target(GL_RGBA8, width_, height_);
     for (std::size_t i = 0; i < buffers_.size(); ++i)
       if (text.buffers[i])
@@ -129,6 +134,7 @@ class ShadertoySource final : public SettableSource {
     if (is_still_ && !is_changed) return false;
     if (auto usable = graphics_->use(); !usable) return tl::make_unexpected(usable.error());
     if (!inputs.empty()) graphics_->upload(input_, inputs[0], true);
+    if (hears_) hear();
     hands_->update(*graphics_, moment);
     for (const auto& pass : passes_) draw_pass(pass, moment);
     graphics_->read(output_, out);
@@ -145,11 +151,19 @@ class ShadertoySource final : public SettableSource {
     return mouse;
   }
 
+  /// Fills the image of sound. Only a shader that is drawn needs the device.
+  void hear() {
+    if (!listener_) listener_.emplace(sound_device_);
+    const auto image = spectrum_.shadertoy_image_of(listener_->newest());
+    graphics_->upload_levels(sound_, image.width, image.height, image.levels);
+  }
+
   const Texels& texels_of(const Channel& channel) {
     const Texels* texels = nullptr;
     if (channel.from == Channel::From::buffer)
       texels = &buffers_[static_cast<std::size_t>(channel.buffer)].last.texels;
     if (channel.from == Channel::From::input) texels = &input_;
+    if (channel.from == Channel::From::sound) texels = &sound_;
     if (channel.from == Channel::From::picture) texels = &pictures_[channel.picture];
     return texels && texels->width > 0 ? *texels : graphics_->nothing();
   }
@@ -177,7 +191,7 @@ class ShadertoySource final : public SettableSource {
     program.set("iTimeDelta", static_cast<float>(moment.step_s));
     program.set("iFrameRate", static_cast<float>(1 / std::max(moment.step_s, 1e-3)));
     program.set("iFrame", static_cast<int>(moment.frame & 0x7fffffff));
-    program.set("iSampleRate", 44100.f);
+    program.set("iSampleRate", static_cast<float>(kHeardRate_hz));
     const std::tm& date = moment.date;
     program.set("iDate", glm::vec4(date.tm_year + 1900, date.tm_mon, date.tm_mday,
                                    static_cast<float>(moment.day_s)));
@@ -206,12 +220,15 @@ class ShadertoySource final : public SettableSource {
   std::unique_ptr<HandView> hands_;
   std::vector<ShadertoyPass> passes_;
   int width_, height_;
-  bool is_filter_, is_still_, has_mouse_ = false;
+  bool is_filter_, hears_, is_still_, has_mouse_ = false;
   FileTimes files_;
   Target output_;
   std::array<ShadertoyBuffer, kShadertoyBuffers> buffers_;
   std::map<fs::path, Texels> pictures_;
-  Texels input_;
+  Texels input_, sound_;
+  std::string sound_device_;
+  std::optional<SoundListener> listener_;
+  Spectrum spectrum_;
 };
 
 }  // namespace

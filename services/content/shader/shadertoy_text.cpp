@@ -75,6 +75,11 @@ void take_sampling(std::string_view& text, Channel& channel) {
   }
 }
 
+using ChannelWord = std::pair<std::string_view, Channel::From>;
+constexpr ChannelWord kChannelWords[] = {{"input", Channel::From::input},
+                                         {"sound", Channel::From::sound},
+                                         {"none", Channel::From::nothing}};
+
 /// Reads what stands behind "iChannel0 =". Errors (bad_config): the end of a sentence.
 Result<Channel> read_channel(std::string_view text, const fs::path& folder) {
   Channel channel, sampled;
@@ -85,8 +90,9 @@ Result<Channel> read_channel(std::string_view text, const fs::path& folder) {
   if (buffer) {
     channel.from = Channel::From::buffer;
     channel.buffer = *buffer;
-  } else if (word == "input" || word == "none") {
-    channel.from = word == "input" ? Channel::From::input : Channel::From::nothing;
+  } else if (const auto* const found = std::ranges::find(kChannelWords, word, &ChannelWord::first);
+             found != std::end(kChannelWords)) {
+    channel.from = found->second;
   } else if (word.ends_with(".png") || word.ends_with(".jpg") || word.ends_with(".jpeg")) {
     channel.from = Channel::From::picture;
     channel.picture = folder / fs::path(what);
@@ -94,7 +100,7 @@ Result<Channel> read_channel(std::string_view text, const fs::path& folder) {
   } else {
     return fail(Errc::bad_config,
                 fmt::format("{} is no channel; it is \"buffer A\" to \"buffer D\", \"input\", "
-                            "\"none\", or a PNG or JPEG file",
+                            "\"sound\", \"none\", or a PNG or JPEG file",
                             quote(what)));
   }
   take_sampling(text, channel);
@@ -271,9 +277,9 @@ std::vector<const ShadertoyPart*> ShadertoyProgram::parts() const {
   return all;
 }
 
-bool ShadertoyProgram::is_filter() const {
-  return std::ranges::any_of(parts(), [](const auto* part) {
-    return std::ranges::count(part->channels, Channel::From::input, &Channel::from) > 0;
+bool ShadertoyProgram::reads(Channel::From from) const {
+  return std::ranges::any_of(parts(), [&](const auto* part) {
+    return std::ranges::count(part->channels, from, &Channel::from) > 0;
   });
 }
 

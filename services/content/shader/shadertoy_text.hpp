@@ -14,7 +14,7 @@ inline constexpr int kShadertoyBuffers = 4, kShadertoyChannels = 4;
 
 /// What a part of a program reads as iChannel0 to iChannel3.
 struct ShadertoyChannel {
-  enum class From { nothing, buffer, input, picture };
+  enum class From { nothing, buffer, input, picture, sound };
   enum class Wrap { clamp, repeat, mirror };
   From from = From::nothing;
   int buffer = 0;                 ///< 0 is A
@@ -33,7 +33,8 @@ struct ShadertoyPart : UserText {
 /// it, NAME.common.frag and NAME.a.frag to NAME.d.frag beside NAME.frag. Channels are stated by
 /// lines in a part, or in what is common for all parts that state none:
 ///
-///     //! iChannel0 = buffer A | input | none | FILE.png  [linear|nearest] [clamp|repeat|mirror]
+///     //! iChannel0 = buffer A | input | sound | none | FILE.png  [linear|nearest]
+///     [clamp|repeat|mirror]
 ///
 /// Without such lines, iChannel0 to iChannel3 are the buffers A to D. Buffers and the input are
 /// linear and clamped, pictures linear and repeated.
@@ -45,8 +46,8 @@ struct ShadertoyProgram {
 
   /// All parts in the order in which they are drawn.
   std::vector<const ShadertoyPart*> parts() const;
-  /// True if a channel is the input.
-  bool is_filter() const;
+  /// True if a channel of a part is from there.
+  bool reads(ShadertoyChannel::From from) const;
   /// The identifiers of all parts.
   std::set<std::string, std::less<>> words() const;
 };

@@ -11,7 +11,7 @@
 #include "ipc/client/stream.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/daemon/contract.hpp"
-#include "ipc/msg/content_command.hpp"
+#include "ipc/msg/content_state.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "services/desk/page/json_text.hpp"
 #include "services/desk/page/low_priority.hpp"

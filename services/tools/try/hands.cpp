@@ -33,7 +33,7 @@ renderer::JointFrames bent(const renderer::HandMesh& mesh, const glm::mat4& wris
 msg::HandPose pose_at(const renderer::HandMesh& mesh, float time_s) {
   const float side = mesh.side == renderer::Side::left ? -1 : 1;
   // The back of the hand to the camera, the fingers up.
-  glm::mat4 wrist{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0.12f * side, 0.05f, 0.6f, 1}};
+  glm::mat4 wrist{{1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0.1f * side, 0.08f, 0.7f, 1}};
   wrist[3].x += 0.02f * std::sin(2 * time_s);
   wrist = glm::rotate(wrist, 0.3f * std::sin(1.3f * time_s), {0, 0, 1});
   const auto frames = bent(mesh, wrist, 0.4f - 0.4f * std::cos(1.7f * time_s));
@@ -50,7 +50,9 @@ msg::HandPose pose_at(const renderer::HandMesh& mesh, float time_s) {
 Result<MovingHands> MovingHands::load() {
   const auto rig = config::parse_rig("", "defaults");
   if (!rig) return tl::make_unexpected(rig.error());
-  auto hands = content::Hands::load(*rig, calib::reference_rig());
+  auto calibration = calib::reference_rig();
+  calibration.camera_from_tracker = glm::dmat4(1);  // pose_at() is in the space of the camera
+  auto hands = content::Hands::load(*rig, calibration);
   if (!hands) return tl::make_unexpected(hands.error());
   return MovingHands(std::move(*hands));
 }

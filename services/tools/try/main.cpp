@@ -109,6 +109,8 @@ static int run_verb(int argc, char** argv) {
       "Size of the pictures, px (default: 640x400)");
   line.add("--frames N", wanted.frames, "Pictures of each source, 1/30 s apart", {1, 100000});
   line.add("--out DIR", wanted.folder, "Write the first, middle and last picture of each as PNG");
+  line.add("--projected", wanted.projects,
+           "With --out: also write the projector's image of the hand with each of these pictures");
   line.add("--json FILE", json, "Write all that was found out");
   line.add("--list", lists, "Print the parameters of each source");
   line.add("--timeout S", wanted.patience_s,
@@ -116,6 +118,8 @@ static int run_verb(int argc, char** argv) {
            "picture of it is drawn",
            {0.1, 3600});
   if (const auto code = line.answered(argc, argv)) return *code;
+  if (wanted.projects && wanted.folder.empty())
+    return trial::complain({Errc::bad_config, "--projected needs --out, a folder for the images"});
   return trial::try_all(wanted, sources, json, lists);
 }
 

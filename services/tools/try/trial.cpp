@@ -14,6 +14,7 @@
 #include "renderer/media/picture.hpp"
 #include "services/content/chain.hpp"
 #include "services/tools/try/hands.hpp"
+#include "services/tools/try/projected.hpp"
 
 namespace handcast::trial {
 namespace {
@@ -142,6 +143,7 @@ class Trial {
   Result<bool> draw(int frame);
   void note_picture(int frame, double ms);
   void save(std::string_view which);
+  void save(std::string_view which, const renderer::Texture& picture);
   void try_parameters();
   bool is_set(std::string_view name) const;
   bool reacts(const Parameter& parameter, const renderer::Texture& usual);
@@ -152,6 +154,7 @@ class Trial {
   Deadline until_;
   std::string lone_;  ///< how the chain names its only element
   std::optional<MovingHands> hands_;
+  content::BothHands both_;  ///< as they are drawn
   std::array<renderer::Texture, 2> cards_;
   bool uses_cards_ = false;
   std::optional<content::Chain> chain_;
@@ -188,7 +191,7 @@ Result<void> Trial::open() {
   report_["open_ms"] = ns_to_ms(now_ns() - begin_ns);
   if (!chain) return tl::make_unexpected(chain.error());
   chain_.emplace(std::move(*chain));
-  hands_->needs_surface(chain_->needs().surface);
+  hands_->needs_surface(chain_->needs().surface || wanted_.projects);
   report_["loaded"] = true;
   for (const auto& parameter : chain_->parameters())
     if (!is_of_chain(parameter.name)) report_["parameters"].push_back(report_of(parameter));
@@ -224,7 +227,7 @@ bool Trial::is_set(std::string_view name) const {
 /// Draws the picture of a frame into picture_ and measures it. Returns whether it is new.
 Result<bool> Trial::draw(int frame) {
   const double time_s = frame / kRate_hz;
-  const auto both = hands_->at(time_s);
+  both_ = hands_->at(time_s);
   for (int which = 0; which < 2 && uses_cards_; ++which)
     paint_card(time_s, which, cards_[static_cast<std::size_t>(which)]);
   content::Moment moment;
@@ -235,8 +238,8 @@ Result<bool> Trial::draw(int frame) {
   localtime_r(&now, &moment.date);
   moment.day_s = moment.date.tm_hour * 3600 + moment.date.tm_min * 60 + moment.date.tm_sec +
                  std::fmod(time_s, 1.);
-  moment.hand = &both[0];
-  moment.other = &both[1];
+  moment.hand = &both_[0];
+  moment.other = &both_[1];
   const auto begin_ns = now_ns();
   const auto drew = chain_->draw(moment, picture_);
   if (drew && *drew) note_picture(frame, ns_to_ms(now_ns() - begin_ns));
@@ -278,8 +281,14 @@ void Trial::draw_all() {
 
 void Trial::save(std::string_view which) {
   if (wanted_.folder.empty()) return;
+  save(which, picture_);
+  if (wanted_.projects)
+    save(fmt::format("{}-projected", which), projected(both_[0], picture_, calib::reference_rig()));
+}
+
+void Trial::save(std::string_view which, const renderer::Texture& picture) {
   const auto file = wanted_.folder / fmt::format("{}-{}.png", wanted_.name, which);
-  const auto written = renderer::write_png(file, std::as_const(picture_).view());
+  const auto written = renderer::write_png(file, picture.view());
   if (written)
     report_["files"].push_back(file.string());
   else

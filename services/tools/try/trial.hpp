@@ -14,6 +14,7 @@ struct Wanted {
   int frames = 30;               ///< pictures, 1/30 s apart
   std::filesystem::path folder;  ///< of the pictures; empty: none are written
   std::string name;              ///< the beginning of their names
+  bool projects = false;         ///< also write what a projector shows to put them onto the hand
   double patience_s = 30;        ///< no further picture is begun after this time
 };
 

@@ -22,6 +22,7 @@ class FailingPainter final : public Painter {
                   Rect region) override {
     return draws_ <= good_frames_ ? cpu_->fill(mask, settings, region) : FillCounts{};
   }
+  void darken(std::span<const Rect> areas, Rect region) override { cpu_->darken(areas, region); }
   View<const std::uint32_t> colour() override {
     return draws_ <= good_frames_ ? cpu_->colour() : std::as_const(dark_).view();
   }

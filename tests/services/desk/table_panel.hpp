@@ -25,6 +25,8 @@ struct Turned {
   double master = 1;
   std::vector<std::string> keep_out;
   std::string left = "builtin:atlas";
+  std::string transition = "fade";
+  double transition_s = 0.6;
   std::vector<double> gravity{0, 1, 0};
   config::PredictMethod method = config::PredictMethod::hold;
 };
@@ -44,6 +46,8 @@ inline config::Listing list_turned(Turned& turned) {
   add("light.master", &turned.master, between(0, 1), "Share of the brightness.");
   add("light.keep_out", &turned.keep_out, {}, "Areas that stay dark.");
   add("content.left", &turned.left, {}, "What is on the left hand.");
+  add("content.transition", &turned.transition, {}, "How one content becomes another.");
+  add("content.transition_s", &turned.transition_s, between(0, 60, "s"), "How long that takes.");
   add("content.gravity", &turned.gravity, between(-1, 1), "Down.");
   add("cascade.predict.method", config::ChoiceTarget::of(turned.method), {}, "The prediction.");
   return listing;

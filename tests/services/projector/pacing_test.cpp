@@ -89,7 +89,7 @@ TEST(Brightness, RisesAtTheStartOfARig) {
   config::Projector settings;
   settings.fade_s = 1;
   constexpr std::int64_t kEpoch_ns = 50'000 * kMs, kFirst_ns = kEpoch_ns + 2'000 * kMs;
-  Brightness brightness(settings, kEpoch_ns);
+  Brightness brightness(settings, config::Light(), kEpoch_ns);
   EXPECT_EQ(brightness.at(kFirst_ns)[255], 0);
   const auto half = brightness.at(kFirst_ns + 500 * kMs);
   EXPECT_EQ(half, renderer::light_table(settings, 0.5));
@@ -97,7 +97,7 @@ TEST(Brightness, RisesAtTheStartOfARig) {
 }
 
 TEST(Brightness, IsFullAtOnceInAProcessThatReplacesAnotherOne) {
-  Brightness brightness(config::Projector(), 50'000 * kMs);
+  Brightness brightness(config::Projector(), config::Light(), 50'000 * kMs);
   EXPECT_EQ(brightness.at(90'000 * kMs), renderer::light_table(config::Projector()));
 }
 
@@ -105,9 +105,37 @@ TEST(Brightness, IsFullAtOnceInAProcessThatReplacesAnotherOne) {
 Brightness full_brightness(double fade_s) {
   config::Projector settings;
   settings.fade_s = fade_s;
-  Brightness brightness(settings, 1 * kMs);
+  Brightness brightness(settings, config::Light(), 1 * kMs);
   brightness.fade_at(90'000 * kMs);
   return brightness;
+}
+
+TEST(Brightness, ABlackoutIsAtOnceAndEndsAtOnce) {
+  auto brightness = full_brightness(1);
+  brightness.adjust({}, {.blackout = true}, 91'000 * kMs);
+  EXPECT_EQ(brightness.at(91'000 * kMs), renderer::light_table({}, 0));
+  EXPECT_FALSE(brightness.has_fallen()) << "the service does not end";
+  brightness.adjust({}, {}, 92'000 * kMs);
+  EXPECT_EQ(brightness.at(92'000 * kMs), renderer::light_table({}));
+}
+
+TEST(Brightness, TheMasterFadesFromWhereItIs) {
+  auto brightness = full_brightness(1);
+  brightness.adjust({}, {.master = 0.5, .master_s = 2}, 91'000 * kMs);
+  EXPECT_NEAR(brightness.fade_at(92'000 * kMs), 0.75, 1e-9);
+  brightness.adjust({}, {.blackout = true, .master = 0.5, .master_s = 2}, 92'000 * kMs);
+  EXPECT_EQ(brightness.fade_at(92'000 * kMs), 0);
+  brightness.adjust({}, {.master = 0.5, .master_s = 2}, 92'500 * kMs);
+  EXPECT_NEAR(brightness.fade_at(92'500 * kMs), 0.625, 1e-9) << "it goes on meanwhile";
+  brightness.adjust({}, {.master = 1, .master_s = 1}, 93'000 * kMs);
+  EXPECT_NEAR(brightness.fade_at(93'500 * kMs), 0.75, 1e-9);
+  EXPECT_NEAR(brightness.fade_at(99'000 * kMs), 1, 1e-9);
+}
+
+TEST(Brightness, TheLimitForEyesIsLive) {
+  auto brightness = full_brightness(1);
+  brightness.adjust({.brightness = 0.25}, {}, 91'000 * kMs);
+  EXPECT_EQ(brightness.at(91'000 * kMs), renderer::light_table({.brightness = 0.25}));
 }
 
 TEST(Brightness, FallsEvenlyToBlackAndStaysBlack) {
@@ -134,7 +162,7 @@ TEST(Brightness, FallsFromWhereItIsInTheMiddleOfItsRise) {
   config::Projector settings;
   settings.fade_s = 1;
   constexpr std::int64_t kFirst_ns = 2'000 * kMs, kFall_ns = kFirst_ns + 500 * kMs;
-  Brightness brightness(settings, 1'000 * kMs);
+  Brightness brightness(settings, config::Light(), 1'000 * kMs);
   brightness.fade_at(kFirst_ns);
   EXPECT_NEAR(brightness.fade_at(kFall_ns), 0.5, 1e-9);
   brightness.fall(kFall_ns, 3'000 * kMs);

@@ -52,7 +52,9 @@ class BareRig : public testing::Test {
   void TearDown() override { system_test::kill_all_of(scratch_.path()); }
 
   void write_file(const std::string& text) const { std::ofstream(file_) << text; }
-  void write_rig(const std::string& more) const { write_file("name = \"desk\"\n" + more); }
+  void write_rig(const std::string& more) const {
+    write_file("name = \"desk\"\ndesk.page.listen = \"\"\n" + more);
+  }
   /// Replaces an existing file, even if it is being executed.
   static void write_program(const std::filesystem::path& program, const std::string& script) {
     std::filesystem::remove(program);

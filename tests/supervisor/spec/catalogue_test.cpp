@@ -115,6 +115,7 @@ TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
       {"landmarks2", {"camera2"}},
       {"projector", {"camera", "pose", "landmarks"}},
       {"content", {}},
+      {"desk", {}},
       {"dlp", {}},
       {"observer", {"projector"}},
       {"exporter", {}}};

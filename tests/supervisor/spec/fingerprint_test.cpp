@@ -18,8 +18,8 @@ namespace {
 using testing::UnorderedElementsAreArray;
 using Paths = std::set<std::string>;
 
-const std::vector<std::string> kServices{"camera",  "pose",     "landmarks", "projector",
-                                         "content", "observer", "exporter"};
+const std::vector<std::string> kServices{"camera",  "pose", "landmarks", "projector",
+                                         "content", "desk", "observer",  "exporter"};
 
 /// What the programs of this build say about themselves.
 const Catalogue& built() {
@@ -168,13 +168,18 @@ TEST(Fingerprint, ARealCameraDependsOnItsOwnSection) {
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
   expect_reads("projector", {},
-               {"projector", "content.shading", "content.smooth", "hand", "cascade"},
+               {"projector", "light", "content.shading", "content.smooth", "hand", "cascade"},
                {"projector.process.standby"});
 }
 
 TEST(Fingerprint, ContentDependsOnItsSectionAndOnWhatPredictsTheHandsThatItReactsTo) {
   expect_reads("content", {}, {"content", "hand", "cascade.predict", "cascade.skin"},
                {"content.process.standby"});
+}
+
+TEST(Fingerprint, TheDeskDependsOnAllThatItLetsPeopleChange) {
+  expect_reads("desk", {}, {"desk", "projector", "light", "content", "hand", "cascade"},
+               {"desk.process.standby"});
 }
 
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {

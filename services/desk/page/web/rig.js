@@ -36,7 +36,7 @@ export class Services {
     row.backend.addEventListener('change', () =>
       this.change(row, '/api/service/swap', {service: name, backend: row.backend.value}, `${name} is ready with ${row.backend.value}`));
     const label = el('span', {}, row.name, ' ', row.state);
-    row.all = el('div', {className: 'service'}, row.dot, label, row.backend, row.rate, row.restart, row.why, row.log);
+    row.all = el('div', {className: row.backend.classList.contains('none') ? 'service plain' : 'service'}, row.dot, label, row.backend, row.rate, row.restart, row.why, row.log);
     $('service-list').append(row.all);
     this.rows.set(name, row);
     return row;
@@ -47,7 +47,7 @@ export class Services {
     const select = el('select', {className: 'backend', 'aria-label': `Back end of ${name}`},
       ...known.map((backend) => el('option', {value: backend.name, title: backend.sentence}, backend.name)));
     select.disabled = !this.isOwner || known.length < 2;
-    if (known.length === 0) select.style.visibility = 'hidden';
+    select.classList.toggle('none', known.length === 0);
     return select;
   }
 

@@ -33,6 +33,7 @@ class SlowPainter final : public Painter {
                   Rect region) override {
     return last = cpu_->fill(mask, settings, region);
   }
+  void darken(std::span<const Rect> areas, Rect region) override { cpu_->darken(areas, region); }
   View<const std::uint32_t> colour() override { return cpu_->colour(); }
   Shown shown(int step) override { return cpu_->shown(step); }
 
@@ -62,6 +63,7 @@ class FakePainter final : public Painter {
                   Rect /*region*/) override {
     return {};
   }
+  void darken(std::span<const Rect> /*areas*/, Rect /*region*/) override {}
   View<const std::uint32_t> colour() override { return {}; }
   Shown shown(int) override { return {}; }
 

@@ -134,15 +134,6 @@ TEST_F(IsfFiles, InputsBoundLoops) {
   EXPECT_EQ(colour(source), kRed);
 }
 
-TEST_F(IsfFiles, SoundIsThereAndMayBeSilent) {
-  const auto source = isf(R"("INPUTS": [{"NAME": "wave", "TYPE": "audio"},
-             {"NAME": "bands", "TYPE": "audioFFT", "MAX": 16}])",
-                          "void main() { float loud = IMG_NORM_PIXEL(bands, vec2(0.1, 0.5)).r + "
-                          "abs(IMG_NORM_PIXEL(wave, vec2(0.1, 0.5)).r) * 0.0; gl_FragColor = "
-                          "vec4(1, loud * 0.0, 0, 1); }");
-  EXPECT_EQ(colour(source), kRed);
-}
-
 TEST_F(IsfFiles, NamesThatGlslHasTaken) {
   const auto head = [](const std::string& name) {
     return R"("INPUTS": [{"NAME": ")" + name + R"(", "TYPE": "float", "DEFAULT": 1}])";
