@@ -77,4 +77,21 @@ std::string fault_of_path(const std::string& path, const std::filesystem::path& 
   return odd_path(path);
 }
 
+Result<std::filesystem::path> state_folder() {
+  std::filesystem::path base;
+  for (const char* name : {"STATE_DIRECTORY", "XDG_STATE_HOME"})
+    if (const char* value = std::getenv(name); value && *value == '/' && base.empty()) base = value;
+  if (base.empty()) {
+    const auto home = expand_home("~/.local/state");
+    if (!home) return fail(Errc::unavailable, home.error().what);
+    base = *home;
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(base / "handcast", failed);
+  if (failed)
+    return fail(Errc::unavailable, fmt::format("the folder {} cannot be made: {}",
+                                               (base / "handcast").string(), failed.message()));
+  return base / "handcast";
+}
+
 }  // namespace handcast

@@ -19,4 +19,9 @@ std::string odd_path(const std::string& path);
 /// absolute, or if there is such a file.
 std::string fault_of_path(const std::string& path, const std::filesystem::path& folder);
 
+/// The folder for what a program remembers from one run to the next: handcast/ in
+/// $STATE_DIRECTORY (a systemd service), $XDG_STATE_HOME or ~/.local/state. Made if there is none.
+/// Errors: unavailable.
+Result<std::filesystem::path> state_folder();
+
 }  // namespace handcast
