@@ -156,8 +156,18 @@ Result<void> decode_grey_jpeg(std::span<const std::uint8_t> bytes, View<std::uin
   return fail(Errc::bad_data, decoder.errors.trouble);
 }
 
-std::vector<std::uint8_t> jpeg_of(View<const std::uint32_t> picture) {
-  constexpr int kQuality = 95;
+namespace {
+
+/// How a picture is written.
+struct Writing {
+  int components = 4;
+  J_COLOR_SPACE space = JCS_EXT_RGBX;
+  int quality = 95;
+  bool has_all_colour = false;  ///< 4:4:4
+};
+
+template <class Pixel>
+std::vector<std::uint8_t> write_jpeg(View<const Pixel> picture, const Writing& writing) {
   jpeg_compress_struct jpeg{};
   jpeg_error_mgr errors{};
   jpeg.err = jpeg_std_error(&errors);  // only the lack of memory is an error, and ends the process
@@ -167,20 +177,34 @@ std::vector<std::uint8_t> jpeg_of(View<const std::uint32_t> picture) {
   jpeg_mem_dest(&jpeg, &bytes, &size);
   jpeg.image_width = static_cast<JDIMENSION>(picture.width);
   jpeg.image_height = static_cast<JDIMENSION>(picture.height);
-  jpeg.input_components = 4;
-  jpeg.in_color_space = JCS_EXT_RGBX;
+  jpeg.input_components = writing.components;
+  jpeg.in_color_space = writing.space;
   jpeg_set_defaults(&jpeg);
-  jpeg_set_quality(&jpeg, kQuality, TRUE);
-  jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[0].v_samp_factor = 1;  // 4:4:4
+  jpeg_set_quality(&jpeg, writing.quality, TRUE);
+  if (writing.has_all_colour) jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[0].v_samp_factor = 1;
   jpeg_start_compress(&jpeg, TRUE);
   for (int y = 0; y < picture.height; ++y) {
-    auto* row = reinterpret_cast<JSAMPROW>(const_cast<std::uint32_t*>(picture.row(y)));
+    auto* row = reinterpret_cast<JSAMPROW>(const_cast<Pixel*>(picture.row(y)));
     jpeg_write_scanlines(&jpeg, &row, 1);
   }
   jpeg_finish_compress(&jpeg);
   jpeg_destroy_compress(&jpeg);
   const std::unique_ptr<unsigned char, decltype(&std::free)> owned(bytes, std::free);
   return {bytes, bytes + size};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> jpeg_of(View<const std::uint32_t> picture) {
+  return write_jpeg(picture, {.has_all_colour = true});
+}
+
+std::vector<std::uint8_t> small_jpeg_of(View<const std::uint32_t> picture, int quality) {
+  return write_jpeg(picture, {.quality = quality});
+}
+
+std::vector<std::uint8_t> small_jpeg_of(View<const std::uint8_t> grey, int quality) {
+  return write_jpeg(grey, {.components = 1, .space = JCS_GRAYSCALE, .quality = quality});
 }
 
 }  // namespace handcast::renderer

@@ -23,5 +23,10 @@ Result<void> decode_grey_jpeg(std::span<const std::uint8_t> bytes, View<std::uin
 
 /// A picture (RGBA8, alpha is left out) as a JPEG file, with all its colour and little loss.
 std::vector<std::uint8_t> jpeg_of(View<const std::uint32_t> picture);
+/// The same for a screen: a third of the bytes, `quality` 1..100.
+/// @{
+std::vector<std::uint8_t> small_jpeg_of(View<const std::uint32_t> picture, int quality);
+std::vector<std::uint8_t> small_jpeg_of(View<const std::uint8_t> grey, int quality);
+/// @}
 
 }  // namespace handcast::renderer

@@ -26,6 +26,8 @@ constexpr std::array kVerbs{
               "Applies a changed rig file: replaces only the services whose settings changed.",
               run_reload, Group::change},
     VerbEntry{"content", "Shows or changes what is on the hands.", run_content, Group::change},
+    VerbEntry{"desk", "Prints the address of the page that shows and works a rig.", run_desk,
+              Group::change},
     VerbEntry{"set", "Changes settings at once, without a restart.", run_set, Group::change},
     VerbEntry{"get", "Shows the settings that `handcast set` changes.", run_get, Group::look},
     VerbEntry{"watch", "Prints every change of a setting, and who made it.", run_watch,

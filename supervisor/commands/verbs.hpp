@@ -54,6 +54,7 @@ int run_reload(const Arguments& arguments);
 int run_trace(const Arguments& arguments);
 int run_latency(const Arguments& arguments);
 int run_content(const Arguments& arguments);
+int run_desk(const Arguments& arguments);
 int run_set(const Arguments& arguments);
 int run_get(const Arguments& arguments);
 int run_watch(const Arguments& arguments);

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ipc/control/desk_address.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "ipc/base/input_file.hpp"
+#include "ipc/base/rig_name.hpp"
+#include "ipc/base/unique_fd.hpp"
+#include "ipc/base/write_whole.hpp"
+#include "ipc/control/rig_address.hpp"
+
+namespace handcast::control {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kTokenBytes = 32;
+
+std::string new_token() {
+  std::array<unsigned char, kTokenBytes> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+    std::abort();
+  std::string token;
+  for (const auto byte : bytes) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+bool is_token(const std::string& text) {
+  return text.size() == 2 * kTokenBytes &&
+         text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// Where the folder may be, best first. A service and a person's shell may know different ones.
+std::vector<fs::path> folders() {
+  std::vector<fs::path> all;
+  if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime == '/')
+    all.push_back(fs::path(runtime) / "handcast");
+  all.push_back(fmt::format("/run/user/{}/handcast", ::getuid()));
+  all.push_back(fmt::format("/tmp/handcast-{}", ::getuid()));
+  return all;
+}
+
+/// True if it is a folder of this user that nobody else can look into.
+bool is_private(const fs::path& folder) {
+  struct stat status {};
+  return ::lstat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) &&
+         status.st_uid == ::getuid() && (status.st_mode & 077) == 0;
+}
+
+/// The first folder that is there or can be made.
+Result<fs::path> make_folder() {
+  for (const auto& folder : folders()) {
+    if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) continue;
+    if (is_private(folder)) return folder;
+  }
+  return fail(Errc::unavailable,
+              fmt::format("there is no folder for the address of the desk: {} cannot be made, or "
+                          "is not a folder of this user alone",
+                          folders().back().string()));
+}
+
+std::string name_of(std::string_view rig) {
+  const char* scope = std::getenv(kScopeVariable);
+  std::string name = scope && *scope ? std::string(scope) + "." : "";
+  for (auto& letter : name)
+    if (letter == '/') letter = '_';
+  return name + std::string(rig) + ".desk";
+}
+
+}  // namespace
+
+std::array<std::string, kRoles> new_tokens() {
+  std::array<std::string, kRoles> tokens;
+  for (auto& token : tokens) token = new_token();
+  return tokens;
+}
+
+Result<fs::path> desk_file(std::string_view rig) {
+  if (!is_rig_name(rig))
+    return fail(Errc::bad_config,
+                fmt::format("'{}' is not a valid name of a rig; {}", rig, kRigNameRule));
+  const auto name = name_of(rig);
+  std::optional<std::pair<fs::file_time_type, fs::path>> newest;
+  for (const auto& folder : folders()) {
+    std::error_code absent;
+    const auto written = fs::last_write_time(folder / name, absent);
+    if (absent || !is_private(folder)) continue;
+    if (!newest || written > newest->first) newest.emplace(written, folder / name);
+  }
+  if (newest) return newest->second;
+  return make_folder().map([&](const fs::path& folder) { return folder / name; });
+}
+
+Result<DeskAddress> read_desk_file(const fs::path& file) {
+  const auto text = read_input(file, kMostText);
+  if (!text) return fail(Errc::unavailable, text.error().what);
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  DeskAddress address;
+  bool is_whole = json.is_object() && json.contains("url") && json["url"].is_string();
+  if (is_whole) address.url = json["url"];
+  for (std::size_t role = 0; is_whole && role < kRoles; ++role) {
+    const auto token = json.find(std::string(kRoleNames[role]));
+    is_whole = token != json.end() && token->is_string() && is_token(*token);
+    if (is_whole) address.tokens[role] = *token;
+  }
+  if (!is_whole)
+    return fail(Errc::bad_data, fmt::format("{} is damaged; remove it, and `handcast restart desk` "
+                                            "writes another",
+                                            file.string()));
+  return address;
+}
+
+Result<void> write_desk_file(const fs::path& file, const DeskAddress& address) {
+  // It is there with its permissions before the tokens are.
+  const UniqueFd fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!fd || ::fchmod(fd.get(), 0600) != 0)
+    return fail(Errc::unavailable,
+                fmt::format("{} cannot be written: {}", file.string(), std::strerror(errno)));
+  nlohmann::json json{{"url", address.url}};
+  for (std::size_t role = 0; role < kRoles; ++role)
+    json[std::string(kRoleNames[role])] = address.tokens[role];
+  return write_whole(file, json.dump(2) + "\n", Durable::no);
+}
+
+}  // namespace handcast::control

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ipc/base/result.hpp"
+#include "ipc/control/desk_address.hpp"
+#include "services/desk/page/http_server.hpp"
+
+namespace handcast::desk {
+
+/// Who may do what at the page. Any thread.
+class Access {
+ public:
+  /// Reads the tokens of the rig's file, or makes them. Errors: those of control::desk_file().
+  static Result<std::unique_ptr<Access>> open(const std::string& rig);
+
+  /// The port of the page before this service was started again; 0: none.
+  std::uint16_t last_port() const;
+  /// Writes the file, from which `handcast desk` knows the address. Errors: unavailable.
+  Result<void> announce(const std::string& address, std::uint16_t port);
+
+  /// Why a request is refused, whoever sends it: it names another computer (a name that was made to
+  /// point here, DNS rebinding), or the page of another site sends it. Empty if it is not.
+  std::optional<std::string> fault_of(const HttpRequest& request) const;
+  /// The role of the one who sends a request, by its cookie or its header Authorization; empty:
+  /// unknown.
+  std::optional<control::Role> role_of(const HttpRequest& request);
+  /// The role of a token; empty: it is none.
+  std::optional<control::Role> role_of_token(std::string_view token);
+  /// The cookie that keeps a token, for the header Set-Cookie. An empty token: removes it.
+  std::string cookie_of(std::string_view token) const;
+  /// Increases whenever `handcast desk --renew` has written other tokens.
+  std::uint64_t generation();
+
+ private:
+  Access(std::string rig, std::filesystem::path file)
+      : rig_(std::move(rig)), file_(std::move(file)) {}
+  void read_again();
+
+  std::string rig_;
+  std::filesystem::path file_;
+  mutable std::mutex mutex_;
+  control::DeskAddress address_;
+  std::string host_, local_host_;  ///< "127.0.0.1:8480", "localhost:8480"
+  struct timespec written_ {};     ///< when the file was
+  std::uint64_t generation_ = 0;
+};
+
+}  // namespace handcast::desk

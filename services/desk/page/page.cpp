@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/desk/page/page.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <charconv>
+#include <thread>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+#include "services/desk/page/access.hpp"
+#include "services/desk/page/board.hpp"
+#include "services/desk/page/http_server.hpp"
+#include "services/desk/page/picture_feed.hpp"
+#include "services/desk/page/rig_watch.hpp"
+#include "services/desk/page/router.hpp"
+
+namespace handcast::desk {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Listen {
+  std::string address;
+  std::uint16_t port = 0;
+};
+
+/// Errors: bad_config.
+Result<Listen> parse_listen(const std::string& text) {
+  const auto colon = text.rfind(':');
+  Listen listen;
+  listen.address = text.substr(0, colon);
+  if (listen.address == "localhost") listen.address = "127.0.0.1";
+  const auto* const begin = colon == std::string::npos ? nullptr : text.data() + colon + 1;
+  const auto* const end = text.data() + text.size();
+  const auto parsed = begin ? std::from_chars(begin, end, listen.port) : std::from_chars_result{};
+  if (!begin || parsed.ec != std::errc() || parsed.ptr != end)
+    return fail(Errc::bad_config,
+                fmt::format("desk.page.listen: '{}' is not an address and a port, "
+                            "as in 127.0.0.1:8480",
+                            text));
+  if (!listen.address.starts_with("127."))
+    return fail(Errc::bad_config,
+                fmt::format("desk.page.listen: the page is served on this computer alone, so "
+                            "'{}' must begin with 127.",
+                            text));
+  return listen;
+}
+
+/// Takes the port that the page had before, for which the process before may still have it for a
+/// moment; else the one of the settings; else any.
+Result<std::unique_ptr<HttpServer>> serve(const Listen& listen, std::uint16_t before,
+                                          const HttpServer::Handler& handler) {
+  constexpr std::int64_t kPortPatience_ns = 2'000'000'000;
+  for (const auto until_ns = now_ns() + kPortPatience_ns; before != 0 && now_ns() < until_ns;) {
+    if (auto server = HttpServer::open(listen.address, before, handler)) return server;
+    std::this_thread::sleep_for(50ms);
+  }
+  if (auto server = HttpServer::open(listen.address, listen.port, handler)) return server;
+  return HttpServer::open(listen.address, 0, handler);
+}
+
+/// Everything of the page. The members are destroyed in the reverse order: first the connections,
+/// which use all others.
+class Page final : public Surface {
+ public:
+  Page(const config::Rig& rig, Panel& panel, CueDeck* cues, std::unique_ptr<Access> access,
+       calib::CameraModel camera)
+      : access_(std::move(access)),
+        board_(panel.controls()),
+        watch_(rig.name, panel, cues, board_),
+        pictures_(rig.name, camera),
+        router_({rig.name, panel, cues}, *access_, board_, pictures_) {}
+  Page(const Page&) = delete;
+  Page& operator=(const Page&) = delete;
+  ~Page() override {
+    board_.close();
+    pictures_.close();
+  }
+
+  /// Errors: those of open_page().
+  Result<void> open(const Listen& listen) {
+    auto server = serve(listen, access_->last_port(),
+                        [this](const HttpRequest& request) { return router_.answer(request); });
+    if (!server) return tl::make_unexpected(server.error());
+    server_ = std::move(*server);
+    if (auto told = access_->announce(listen.address, server_->port()); !told) return told;
+    if (listen.port != 0 && server_->port() != listen.port)
+      log::info("the page is at {}:{}, because port {} is taken", listen.address, server_->port(),
+                listen.port);
+    return {};
+  }
+
+  void turn(const Scene& scene) override {
+    if (board_.guests() == 0) return;
+    watch_.take(scene);
+    pictures_.take(scene);
+  }
+
+ private:
+  std::unique_ptr<Access> access_;
+  Board board_;
+  RigWatch watch_;
+  PictureFeed pictures_;
+  Router router_;
+  std::unique_ptr<HttpServer> server_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Surface>> open_page(const config::Rig& rig, Panel& panel, CueDeck* cues) {
+  if (rig.desk.page.listen.empty()) return nullptr;
+  const auto listen = parse_listen(rig.desk.page.listen);
+  if (!listen) return tl::make_unexpected(listen.error());
+  const auto calibration = calib::load_calibration(rig.calibration);
+  if (!calibration) return tl::make_unexpected(calibration.error());
+  auto access = Access::open(rig.name);
+  if (!access) return tl::make_unexpected(access.error());
+  auto page = std::make_unique<Page>(rig, panel, cues, std::move(*access), calibration->camera);
+  if (const auto opened = page->open(*listen); !opened) return tl::make_unexpected(opened.error());
+  return page;
+}
+
+}  // namespace handcast::desk

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "ipc/control/control_client.hpp"
+#include "ipc/control/desk_address.hpp"
+#include "supervisor/commands/choose_rig.hpp"
+#include "supervisor/commands/verbs.hpp"
+
+namespace handcast::supervisor {
+namespace {
+
+/// A text of an object; "" if it is none, as in the answer of another version.
+std::string text_in(const nlohmann::json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// Whether the desk of a rig works. Errors: unavailable (the rig or its desk is not up).
+Result<void> check_desk(const std::string& rig) {
+  const auto answer = control::ask(rig, {.verb = control::Verb::status});
+  if (!answer) return tl::make_unexpected(answer.error());
+  const auto desk = nlohmann::json::json_pointer("/status/services/desk");
+  if (!answer->contains(desk))
+    return fail(Errc::unavailable,
+                fmt::format("rig '{}' has no desk; its rig file says so in [desk]", rig));
+  const auto& service = answer->at(desk);
+  const auto state = text_in(service, "state"), reason = text_in(service, "reason");
+  if (state == "ready") return {};
+  return fail(Errc::unavailable, fmt::format("the desk of rig '{}' is {}{}{}", rig, state,
+                                             reason.empty() ? "" : ": ", reason));
+}
+
+/// The address of the desk of a rig; with other tokens if `renew`.
+Result<control::DeskAddress> desk_of(const std::string& rig, bool renew) {
+  const auto file = control::desk_file(rig);
+  if (!file) return tl::make_unexpected(file.error());
+  auto address = control::read_desk_file(*file);
+  if (!address && address.error().code == Errc::unavailable)
+    return fail(Errc::unavailable,
+                fmt::format("the desk of rig '{}' serves no page: desk.page.listen is empty, or "
+                            "the page could not be opened (its log says why)",
+                            rig));
+  if (!address || !renew) return address;
+  address->tokens = control::new_tokens();
+  if (const auto written = control::write_desk_file(*file, *address); !written)
+    return tl::make_unexpected(written.error());
+  return address;
+}
+
+control::Role role_named(const std::string& name) {
+  for (std::size_t i = 0; i < control::kRoles; ++i)
+    if (control::kRoleNames[i] == name) return static_cast<control::Role>(i);
+  return control::Role::owner;
+}
+
+}  // namespace
+
+int run_desk(const Arguments& arguments) {
+  auto line = command_line_of(
+      "desk",
+      "A viewer looks on; an operator also changes live settings, shows content and works the "
+      "cues;\nan owner also saves, and restarts and swaps services. The address holds a token, "
+      "which a browser\nkeeps: whoever has it may do the same.");
+  std::string rig_name, role = "owner";
+  bool renew = false;
+  line.add("--for viewer|operator|owner", role, "What the person who gets the address may do");
+  line.add("--renew", renew, "Makes all addresses that were printed before invalid");
+  add_rig(line, rig_name);
+  if (const auto code = line.answered(arguments)) return *code;
+  const auto rig = choose_rig(rig_name);
+  if (!rig) return complain(rig.error());
+  if (const auto works = check_desk(*rig); !works) return complain(works.error());
+  const auto address = desk_of(*rig, renew);
+  if (!address) return complain(address.error());
+  fmt::print("{}\n", address->url_for(role_named(role)));
+  return kExitDone;
+}
+
+}  // namespace handcast::supervisor

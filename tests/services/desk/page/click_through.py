@@ -1,0 +1,278 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Clicks through the page of the desk in headless Chromium, as wide as a desktop and as a phone.
+
+usage: click_through.py SERVE_PAGE CHROMIUM [PICTURES]
+
+SERVE_PAGE serves a page without a rig (serve_page.cpp). PICTURES: a folder for pictures of what is seen.
+"""
+import base64
+import json
+import os
+import pathlib
+import select
+import subprocess
+import sys
+import tempfile
+import time
+
+PATIENCE_S = 20
+WIDTHS = {"desktop": (1440, 900), "phone": (390, 844)}
+NAMED_ROLES = {"button", "slider", "textbox", "searchbox", "combobox", "checkbox", "switch", "radio", "spinbutton", "link"}
+
+
+class Browser:
+    """Chromium, driven by its DevTools protocol through two pipes."""
+
+    def __init__(self, program, folder):
+        to_browser, self.pipe_out = os.pipe()
+        self.pipe_in, from_browser = os.pipe()
+        options = f"--headless=new --no-sandbox --disable-gpu --remote-debugging-pipe --user-data-dir={folder} --no-first-run"
+        self.process = subprocess.Popen(["sh", "-c", f"exec {program} {options} 3<&{to_browser} 4>&{from_browser}"],
+                                        pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(to_browser)
+        os.close(from_browser)
+        self.bytes = b""
+        self.count = 0
+        self.faults = []
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+
+    def receive(self):
+        while b"\0" not in self.bytes:
+            if not select.select([self.pipe_in], [], [], PATIENCE_S)[0]:
+                raise AssertionError("the browser does not answer")
+            part = os.read(self.pipe_in, 1 << 20)
+            assert part, "the browser ended"
+            self.bytes += part
+        message, self.bytes = self.bytes.split(b"\0", 1)
+        return json.loads(message)
+
+    def send(self, method, session=None, **parameters):
+        self.count += 1
+        request = {"id": self.count, "method": method, "params": parameters, **({"sessionId": session} if session else {})}
+        data = json.dumps(request).encode() + b"\0"
+        while data:
+            data = data[os.write(self.pipe_out, data):]
+        while True:
+            answer = self.receive()
+            if answer.get("id") == self.count:
+                assert "error" not in answer, f"{method}: {answer.get('error')}"
+                return answer["result"]
+            self.note(answer)
+
+    def note(self, event):
+        if event.get("method") == "Runtime.exceptionThrown":
+            self.faults.append(event["params"]["exceptionDetails"].get("exception", {}).get("description", "an exception"))
+        if event.get("method") == "Log.entryAdded" and event["params"]["entry"]["level"] == "error":
+            self.faults.append(event["params"]["entry"]["text"])
+
+
+class Tab:
+    """A page that is open."""
+
+    def __init__(self, browser, url, width, height):
+        self.browser = browser
+        target = browser.send("Target.createTarget", url="about:blank")["targetId"]
+        self.target = target
+        self.session = browser.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Accessibility"):
+            self.do(f"{domain}.enable")
+        self.do("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        self.do("Page.navigate", url=url)
+        self.wait("document.readyState === 'complete' && document.getElementById('main')", "the page")
+
+    def do(self, method, **parameters):
+        return self.browser.send(method, self.session, **parameters)
+
+    def close(self):
+        self.browser.send("Target.closeTarget", targetId=self.target)
+
+    def js(self, expression):
+        result = self.do("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        assert "exceptionDetails" not in result, f"{expression}: {result['exceptionDetails']}"
+        return result["result"].get("value")
+
+    def wait(self, expression, why):
+        end = time.monotonic() + PATIENCE_S
+        while not self.js(f"Boolean({expression})"):
+            assert time.monotonic() < end, f"{why}: {expression}"
+            time.sleep(0.05)
+
+    def click(self, selector):
+        """As a person does: at the middle of what is seen."""
+        place = self.js(f"""(() => {{ const e = document.querySelector({json.dumps(selector)});
+            e.scrollIntoView({{block: 'center'}}); const b = e.getBoundingClientRect();
+            const x = b.x + b.width / 2, y = b.y + b.height / 2, top = document.elementFromPoint(x, y);
+            return {{x, y, seen: top === e || e.contains(top) || (top && top.contains(e))}}; }})()""")
+        assert place["seen"], f"{selector} is covered"
+        for kind in ("mousePressed", "mouseReleased"):
+            self.do("Input.dispatchMouseEvent", type=kind, x=place["x"], y=place["y"], button="left", clickCount=1)
+
+    def key(self, key, code, number, modifiers=0, text=""):
+        for kind in ("keyDown", "keyUp"):
+            self.do("Input.dispatchKeyEvent", type=kind, key=key, code=code, windowsVirtualKeyCode=number, modifiers=modifiers,
+                    **({"text": text} if text and kind == "keyDown" else {}))
+
+    def type(self, selector, text):
+        self.js(f"document.querySelector({json.dumps(selector)}).focus()")
+        self.js(f"document.querySelector({json.dumps(selector)}).value = ''")
+        self.do("Input.insertText", text=text)
+
+    def part(self, name):
+        if self.js("getComputedStyle(document.getElementById('tabs')).display !== 'none'"):
+            self.click(f"#tabs a[href='#{name}']")
+            self.wait(f"document.getElementById('{name}').classList.contains('shown')", "a tab")
+
+    def picture(self, folder, name):
+        if folder:
+            data = self.do("Page.captureScreenshot", format="png")["data"]
+            (folder / f"{name}.png").write_bytes(base64.b64decode(data))
+
+
+def check_names(tab, where):
+    nodes = tab.do("Accessibility.getFullAXTree")["nodes"]
+    for node in nodes:
+        role = node.get("role", {}).get("value")
+        if role in NAMED_ROLES and not node.get("ignored"):
+            assert node.get("name", {}).get("value", "").strip(), f"{where}: a {role} has no name: {node}"
+
+
+def check_width(tab, width):
+    wide = tab.js("document.documentElement.scrollWidth")
+    assert wide <= width, f"the page is {wide} px wide on a screen of {width} px"
+
+
+def check_settings(tab):
+    tab.part("settings")
+    tab.type("#search", "fill")
+    tab.wait("[...document.querySelectorAll('.setting')].filter((e) => e.offsetParent && e.closest('#groups')).length === 1", "the search")
+    row = "[...document.querySelectorAll('#groups .setting')].find((e) => e.offsetParent)"
+    tab.js(f"{row}.querySelector('input[type=range]').focus()")
+    before = tab.js(f"{row}.querySelector('input[type=number]').value")
+    tab.key("ArrowRight", "ArrowRight", 39)
+    tab.wait(f"{row}.classList.contains('changed')", "a slider by key")
+    assert tab.js(f"{row}.querySelector('input[type=number]').value") != before
+    tab.wait("document.getElementById('last').textContent.includes('projector.fill.cells')", "who changed what")
+    tab.click("#only-changed")
+    tab.wait(f"{row}", "the changed one")
+    tab.js(f"{row}.querySelector('.reset').setAttribute('data-test', '1')")
+    tab.click("[data-test]")
+    tab.wait("!document.querySelector('#groups .changed')", "a reset")
+    tab.click("#only-changed")
+    tab.type("#search", "")
+    tab.js("document.getElementById('search').dispatchEvent(new Event('input'))")
+    tab.type("#preset-name", "evening")
+    tab.click("#preset-store")
+    tab.wait("document.getElementById('preset').value === 'evening'", "a preset")
+    tab.click("#preset-load")
+    tab.wait("document.getElementById('toast').textContent === 'Preset evening'", "a preset that is loaded")
+
+
+def check_light(tab):
+    pressed = "document.getElementById('{}').getAttribute('aria-pressed') === '{}'"
+    tab.click("#blackout")
+    tab.wait(pressed.format("blackout", "true"), "blackout")
+    tab.click("#undo")
+    tab.wait(pressed.format("blackout", "false"), "undo")
+    tab.js("document.activeElement.blur()")
+    tab.key("F", "KeyF", 70, modifiers=8, text="F")
+    tab.wait(pressed.format("freeze", "true"), "freeze by key")
+    tab.key("F", "KeyF", 70, modifiers=8, text="F")
+    tab.wait(pressed.format("freeze", "false"), "freeze by key")
+    tab.js("document.getElementById('master').focus()")
+    tab.key("ArrowLeft", "ArrowLeft", 37)
+    tab.wait("document.getElementById('master-text').textContent === '99 %'", "master by key")
+    tab.key("ArrowRight", "ArrowRight", 39)
+    tab.click("#ab")
+    tab.wait("document.getElementById('ab').getAttribute('aria-label').includes('state B is shown')", "compare")
+    tab.click("#ab")
+
+
+def check_others(tab):
+    tab.part("picture")
+    lit = """(() => { const c = document.getElementById('camera'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+              return c.width > 100 && d.some((v, i) => i % 4 === 0 && v > 100); })()"""
+    tab.wait(lit, "a picture")
+    tab.wait("/Hz/.test(document.getElementById('picture-text').textContent)", "the rate of the picture")
+    tab.part("cues")
+    current = "document.querySelector('#cue-list li:nth-child({}) button').getAttribute('aria-current') === 'true'"
+    tab.click("#cue-list li:nth-child(3) button")
+    tab.wait(current.format(3), "a cue by click")
+    tab.click("#cue-go")
+    tab.wait(current.format(4), "the next cue")
+    tab.click("#cue-back")
+    tab.wait(current.format(3), "the cue before")
+    tab.part("looks")
+    if tab.js("document.querySelectorAll('#look-list button').length > 0"):
+        tab.click("#look-list button")
+        tab.wait("document.getElementById('toast').textContent.includes('on both hands')", "a look")
+    tab.part("services")
+    tab.wait("document.querySelectorAll('.service').length === 6", "the services")
+    tab.click("[aria-label='Restart pose']")
+    tab.wait("document.getElementById('toast').textContent === 'pose is ready again'", "a restart")
+
+
+def check_leaks(tab):
+    """What a page that is left open makes is bounded."""
+    def nodes():
+        tab.do("HeapProfiler.collectGarbage")
+        return tab.browser.send("Memory.getDOMCounters", tab.session)["nodes"]
+    before = nodes()
+    time.sleep(4)
+    after = nodes()
+    assert after <= before + 200, f"the page has {after} nodes after {before}"
+
+
+def check_viewer(browser, url, width, height):
+    tab = Tab(browser, url, width, height)
+    tab.wait("document.getElementById('link-text').textContent === 'connected as viewer'", "a viewer")
+    free = tab.js("""[...document.querySelectorAll('main button, header button, main select, #groups input')]
+        .filter((e) => !e.disabled).map((e) => e.id || e.textContent)""")
+    assert free == [], f"a viewer may press {free}"
+    tab.close()
+
+
+def click_through(browser, urls, name, folder):
+    width, height = WIDTHS[name]
+    tab = Tab(browser, urls["owner"], width, height)
+    tab.wait("document.getElementById('link-text').textContent === 'connected as owner'", "the start")
+    assert "token" not in tab.js("location.href"), "the token is still in the address"
+    check_light(tab)
+    check_settings(tab)
+    tab.picture(folder, f"{name}-settings")
+    check_others(tab)
+    for part in ("picture", "looks", "cues", "services"):
+        tab.part(part)
+        tab.js(f"document.getElementById('{part}').scrollIntoView()")
+        time.sleep(0.6)
+        check_width(tab, width)
+        check_names(tab, part)
+        tab.picture(folder, f"{name}-{part}")
+    check_leaks(tab)
+    tab.close()
+    check_viewer(browser, urls["viewer"], width, height)
+
+
+def main():
+    serve_page, chromium = sys.argv[1:3]
+    folder = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
+    server = subprocess.Popen([serve_page], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    urls = {role: server.stdout.readline().strip() for role in ("viewer", "operator", "owner")}
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        browser = Browser(chromium, profile)
+        try:
+            for name in WIDTHS:
+                click_through(browser, urls, name, folder)
+            assert not browser.faults, f"the browser complains: {browser.faults}"
+        finally:
+            browser.close()
+            server.stdin.close()
+            server.wait()
+    print("clicked through at", ", ".join(f"{width}x{height}" for width, height in WIDTHS.values()))
+
+
+if __name__ == "__main__":
+    main()
