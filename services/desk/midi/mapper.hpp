@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "services/desk/base/cue_deck.hpp"
 #include "services/desk/controls/complaints.hpp"
-#include "services/desk/cue_deck.hpp"
 #include "services/desk/midi/bindings.hpp"
 
 namespace handcast::desk::midi {

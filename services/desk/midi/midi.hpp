@@ -7,11 +7,11 @@
 
 #include "config/rig.hpp"
 #include "ipc/base/result.hpp"
-#include "services/desk/cue_deck.hpp"
+#include "services/desk/base/cue_deck.hpp"
+#include "services/desk/base/midi_learner.hpp"
+#include "services/desk/base/panel.hpp"
+#include "services/desk/base/surface.hpp"
 #include "services/desk/midi/port.hpp"
-#include "services/desk/midi_learner.hpp"
-#include "services/desk/panel.hpp"
-#include "services/desk/surface.hpp"
 
 namespace handcast::desk {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/desk/cue_deck.hpp"
+#include "services/desk/base/cue_deck.hpp"
 
 namespace handcast::test {
 
