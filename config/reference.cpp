@@ -20,7 +20,11 @@ constexpr std::string_view kHead =
     "for example `--set cascade.fill.method=none`. A relative path in a rig file starts at the "
     "folder of that file, a relative\n"
     "path in `--set` at the current folder. `handcast config --check FILE` lists what `handcast "
-    "up` would refuse; it opens no device, output or port.\n";
+    "up` would refuse; it opens no device, output or port.\n"
+    "\n"
+    "Those marked (live) change while the rig is up, with `handcast set path=value`; the others "
+    "when "
+    "their services are started, with\n`handcast reload`.\n";
 
 /// Escapes bars, which would end the cell of a table.
 std::string cell(std::string_view text) {
@@ -38,7 +42,8 @@ std::string allowed_without_unit(const Setting& setting) {
 }
 
 std::string row(const Setting& setting) {
-  return fmt::format("| `{}` | `{}` | {} | {} | {} |\n", setting.name(), cell(print_value(setting)),
+  return fmt::format("| `{}`{} | `{}` | {} | {} | {} |\n", setting.name(),
+                     setting.effect == Effect::live ? " (live)" : "", cell(print_value(setting)),
                      allowed_without_unit(setting), cell(setting.range.unit),
                      cell(setting.sentence));
 }

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// How soon a change of a setting is in the light of a rig (config/rigs/twin.toml), and what the
+// desk costs.
+//   bench_desk_rig [--goals FILE]
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/live/live_board.hpp"
+#include "ipc/base/clock.hpp"
+#include "ipc/base/unique_fd.hpp"
+#include "ipc/client/stream.hpp"
+#include "ipc/msg/projection.hpp"
+#include "tests/bench/control_rig.hpp"
+#include "tests/bench/goals.hpp"
+#include "tests/bench/percentiles.hpp"
+#include "tests/bench/rings_transports.hpp"
+
+namespace handcast::bench {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kRefresh_hz = 120;
+constexpr int kOscPort = 19000, kChanges = 120;
+
+/// An area that covers all of the projector's picture.
+constexpr std::string_view kEverywhere = "-10 -10, 5000 -10, 5000 5000, -10 5000";
+
+template <class T>
+T must(Result<T> result) {
+  if (!result) give_up(result.error().what);
+  return std::move(*result);
+}
+
+bool is_dark(const msg::Projection& frame) {
+  const std::size_t count = std::size_t{frame.region_width_px} * frame.region_height_px;
+  return std::all_of(frame.pixels(), frame.pixels() + count,
+                     [](auto pixel) { return (pixel & 0xffffff) == 0; });
+}
+
+/// Makes changes, each the other way round. Returns the times from each to the publication of the
+/// first frame that shows it, ms.
+template <class Change>
+std::vector<double> times_to_light_ms(const Change& change) {
+  auto frames = must(client::open_stream<msg::Projection>("twin", "projection.frames"));
+  std::vector<double> times_ms;
+  for (int i = 0; i < kChanges; ++i) {
+    const bool is_dark_then = i % 2 == 0;
+    const auto begin_ns = now_ns();
+    change(is_dark_then);
+    for (const auto until = Deadline::in(2s); !until.passed();) {
+      const auto frame = frames.next(Deadline::in(100ms));
+      if (!frame || (*frame)->header.published_ns < begin_ns || (*frame)->hand_count == 0) continue;
+      if (is_dark(**frame) != is_dark_then) continue;
+      times_ms.push_back(ns_to_ms((*frame)->header.published_ns - begin_ns));
+      break;
+    }
+    ::usleep(static_cast<useconds_t>(40'000 + 1'700 * (i % 10)));
+  }
+  return times_ms;
+}
+
+void change_by_board(config::LiveBoard& board, bool dark) {
+  const std::vector<std::string> change{dark ? fmt::format("light.keep_out=\"{}\"", kEverywhere)
+                                             : "light.keep_out"};
+  must(board.set(change, "bench"));
+}
+
+/// A padded OSC string.
+std::string osc_text(std::string text) {
+  text.append(4 - text.size() % 4, '\0');
+  return text;
+}
+
+/// Sends OSC messages to the desk.
+class OscSender {
+ public:
+  OscSender() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(kOscPort);
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
+      give_up("no UDP socket");
+  }
+  void send(const std::string& message) const {
+    if (::send(socket_.get(), message.data(), message.size(), 0) < 0) give_up("OSC is not sent");
+  }
+
+ private:
+  UniqueFd socket_;
+};
+
+/// The share of one core that a process took, from its times in /proc.
+double busy_seconds(pid_t pid) {
+  std::ifstream stat(fmt::format("/proc/{}/stat", pid));
+  std::string text;
+  std::getline(stat, text);
+  const auto fields = text.substr(text.rfind(')') + 2);
+  long ticks = 0;
+  std::size_t at = 0;
+  for (int field = 3; field <= 15 && at != fields.npos; ++field) {
+    const auto next = fields.find(' ', at);
+    if (field >= 14) ticks += std::stol(fields.substr(at, next - at));
+    at = next == fields.npos ? next : next + 1;
+  }
+  return static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+void note(std::vector<Goal>& goals, const char* way, const std::vector<double>& times_ms,
+          double most_ms) {
+  fmt::print("setting to first changed frame, {}: p50 {:.1f} ms, p99 {:.1f} ms of {} changes\n",
+             way, median(times_ms), percentile(times_ms, 0.99), times_ms.size());
+  goals.push_back(
+      {fmt::format("setting to frame, {}, p99", way), percentile(times_ms, 0.99), most_ms, "ms"});
+}
+
+int run(const char* goals_file) {
+  const RigFolder folder;
+  std::vector<Goal> goals;
+  const TwinRig rig(
+      folder, {"camera.rate_hz=120", "projector.rate_hz=120", "observer.enabled=false",
+               "twin.motion=builtin:still", fmt::format("desk.osc.listen=127.0.0.1:{}", kOscPort)});
+  auto board = must(config::LiveBoard::open("twin"));
+  constexpr double kTwoRefreshes_ms = 2e3 / kRefresh_hz;
+  note(goals, "by the ring", times_to_light_ms([&](bool dark) { change_by_board(board, dark); }),
+       kTwoRefreshes_ms);
+  const OscSender osc;
+  const auto by_osc = times_to_light_ms([&](bool dark) {
+    osc.send(dark
+                 ? osc_text("/light/keep_out") + osc_text(",s") + osc_text(std::string(kEverywhere))
+                 : osc_text("/light/keep_out") + osc_text(",N"));
+  });
+  note(goals, "by OSC", by_osc, kTwoRefreshes_ms + 5);
+
+  const auto pid = rig.pid_of("desk");
+  const double before_s = busy_seconds(pid);
+  const auto begin_ns = now_ns();
+  ::usleep(5'000'000);
+  const double share = (busy_seconds(pid) - before_s) / ns_to_seconds(now_ns() - begin_ns);
+  fmt::print("the desk without a page: {:.1f} % of one core\n", 100 * share);
+  goals.push_back({"desk without a page, of one core", 100 * share, 1, "%"});
+  print_goals(goals);
+  return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace handcast::bench
+
+int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const bool has_file = argc > 2 && std::string_view(argv[1]) == "--goals";
+  return handcast::bench::run(has_file ? argv[2] : nullptr);
+}
