@@ -101,6 +101,8 @@ TEST(OscPacket, ABundleWithAnImpossibleLengthIsRefused) {
   for (const auto& length :
        {"\xff\xff\xff\xff"s, "\xff\xff\xff\xfc"s, "\0\0\0\x10"s, "\0\0\0\3"s, "\0\0\0\0"s, "\0\0"s})
     EXPECT_FALSE(read_bundle(bytes_of(head + length + "/a\0\0,\0\0\0"s)));
+  EXPECT_FALSE(read_bundle(bytes_of(head + "\0\0\0\0"s))) << "an element of no bytes";
+  EXPECT_FALSE(read_bundle(bytes_of(head + "\0\0\0\3/a\0"s))) << "no multiple of four";
   EXPECT_FALSE(read_bundle(bytes_of("#bundle\0\0\0"s)));
   EXPECT_FALSE(read_bundle(bytes_of("#bungle\0\0\0\0\0\0\0\0\1"s)));
 }
