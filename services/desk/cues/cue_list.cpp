@@ -181,7 +181,7 @@ class CueReader {
     }
     if (!table) return complain_of_path(path, value);
     for (const auto& [name, member] : *table)
-      read_targets(path.empty() ? name : path + "." + name, member, cue);
+      read_targets(path.empty() ? name : fmt::format("{}.{}", path, name), member, cue);
   }
 
   void complain_of_path(const std::string& path, const Value& value) {

@@ -29,6 +29,7 @@ std::string print_assignment(const Control& control, const std::vector<double>& 
   if (control.kind != Kind::numbers)
     return fmt::format("{}={}", control.path, print_number(numbers[0]));
   std::vector<std::string> texts;
+  texts.reserve(numbers.size());
   for (const double number : numbers) texts.push_back(print_number(number));
   return fmt::format("{}=[{}]", control.path, join(texts, ", "));
 }

@@ -250,13 +250,32 @@ TEST_F(Cues, ACueStartsAtItsTimeOfDay) {
   EXPECT_EQ(current(), 0);
   wall_s = kNoon_s + 12 * 3600 - 1;
   turn();
-  EXPECT_EQ(current(), 0) << "a clock that was set starts nothing";
+  EXPECT_EQ(current(), 0);
   pass(2);
   EXPECT_EQ(current(), 1);
   wall_s = kNoon_s + 86400 + 1;
   turn();
   pass(2);
   EXPECT_EQ(current(), 0) << "every day";
+}
+
+TEST_F(Cues, AClockThatIsSetStartsNothing) {
+  open("[[cue]]\non = \"at 12:00:02\"\n");
+  wall_s += 3600;
+  turn();
+  EXPECT_EQ(current(), -1);
+  wall_s -= 3600;
+  turn();
+  pass(3);
+  EXPECT_EQ(current(), 0);
+}
+
+TEST_F(Cues, AnEventDoesNotStartTheCurrentCueAgain) {
+  open("[[cue]]\non = \"left.pinch\"\nset.light.master = 0\n");
+  turn({"left.pinch"});
+  ASSERT_TRUE(panel.set(std::vector<std::string>{"light.master=1"}, "page"));
+  turn({"left.pinch"});
+  EXPECT_EQ(panel.value("light.master"), "1");
 }
 
 TEST_F(Cues, ACueFollowsTheOneBefore) {

@@ -39,10 +39,11 @@ TEST(OscPacket, TheBytesAreThoseOfTheSpecification) {
 }
 
 TEST(OscPacket, WideTypesAndListsAreRead) {
-  const auto message =
-      read_message(bytes_of("/a\0\0,[hd]tcSN\0\0\0\0\0\0\0\0\0\0\x07\x3f\xe0\0\0\0\0\0\0"
-                            "\0\0\0\0\0\0\0\1\0\0\0A"
-                            "word\0\0\0\0"s));
+  const auto bytes =
+      "/a\0\0,[hd]tcSN\0\0\0\0\0\0\0\0\0\0\x07\x3f\xe0\0\0\0\0\0\0"
+      "\0\0\0\0\0\0\0\1\0\0\0A"
+      "word\0\0\0\0"s;
+  const auto message = read_message(bytes_of(bytes));
   ASSERT_TRUE(message) << message.error().what;
   ASSERT_EQ(message->count, 6u);
   EXPECT_EQ(message->all[0].number, 7);
@@ -88,7 +89,8 @@ TEST(OscPacket, TooManyArgumentsAreRefused) {
 
 TEST(OscPacket, ABundleHasItsElements) {
   const std::vector parts{packet("/a", 1.f), packet("/b", 2.f)};
-  const auto bundle = read_bundle(bytes_of(write_bundle(parts)));
+  const auto bytes = write_bundle(parts);
+  const auto bundle = read_bundle(bytes_of(bytes));
   ASSERT_TRUE(bundle) << bundle.error().what;
   EXPECT_EQ(bundle->time_tag, kAtOnce);
   ASSERT_EQ(bundle->elements.size(), 2u);
@@ -99,6 +101,8 @@ TEST(OscPacket, ABundleWithAnImpossibleLengthIsRefused) {
   for (const auto& length :
        {"\xff\xff\xff\xff"s, "\xff\xff\xff\xfc"s, "\0\0\0\x10"s, "\0\0\0\3"s, "\0\0\0\0"s, "\0\0"s})
     EXPECT_FALSE(read_bundle(bytes_of(head + length + "/a\0\0,\0\0\0"s)));
+  EXPECT_FALSE(read_bundle(bytes_of(head + "\0\0\0\0"s))) << "an element of no bytes";
+  EXPECT_FALSE(read_bundle(bytes_of(head + "\0\0\0\3/a\0"s))) << "no multiple of four";
   EXPECT_FALSE(read_bundle(bytes_of("#bundle\0\0\0"s)));
   EXPECT_FALSE(read_bundle(bytes_of("#bungle\0\0\0\0\0\0\0\0\1"s)));
 }
