@@ -65,7 +65,8 @@ Result<void> cue(CueDeck* cues, const json& body, const std::string& source) {
   if (*what == "hold") return cues->hold(), Result<void>();
   const auto cue = text_in(body, "cue");
   if (*what == "jump" && cue) return cues->jump(*cue);
-  return fail(Errc::bad_data, "A cue must be \"go\", \"back\", \"hold\", or \"jump\" to a \"cue\".");
+  return fail(Errc::bad_data,
+              "A cue must be \"go\", \"back\", \"hold\", or \"jump\" to a \"cue\".");
 }
 
 Result<void> preset(Panel& panel, const json& body, const std::string& source, bool stores) {

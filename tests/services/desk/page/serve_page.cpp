@@ -21,13 +21,18 @@ ipc::Segment ring(const char* stream, bool keep_history, std::size_t bytes = siz
 
 template <class T>
 ipc::Writer<T> writer(const ipc::Segment& segment) {
-  return std::move(*ipc::Writer<T>::attach(
-      *ipc::Segment::open(UniqueFd(::dup(segment.fd()))), Deadline::now()));
+  return std::move(
+      *ipc::Writer<T>::attach(*ipc::Segment::open(UniqueFd(::dup(segment.fd()))), Deadline::now()));
 }
 
 nlohmann::json service(const char* state, const char* backend) {
-  return {{"state", state}, {"backend", backend}, {"restarts", 0}, {"uptime_s", 512.0},
-          {"reason", nullptr}, {"instead_of", nullptr}, {"log", nlohmann::json::array()}};
+  return {{"state", state},
+          {"backend", backend},
+          {"restarts", 0},
+          {"uptime_s", 512.0},
+          {"reason", nullptr},
+          {"instead_of", nullptr},
+          {"log", nlohmann::json::array()}};
 }
 
 nlohmann::json stream(double hz) { return {{"wanted_hz", hz}, {"held_hz", hz - 0.2}}; }
@@ -36,22 +41,28 @@ nlohmann::json status() {
   nlohmann::json status{
       {"uptime_s", 512.3},
       {"services",
-       {{"camera", service("ready", "twin")}, {"pose", service("ready", "twin")},
-        {"landmarks", service("failed", "onnx")}, {"projector", service("ready", "window")},
-        {"content", service("ready", "")}, {"desk", service("ready", "")}}},
+       {{"camera", service("ready", "twin")},
+        {"pose", service("ready", "twin")},
+        {"landmarks", service("failed", "onnx")},
+        {"projector", service("ready", "window")},
+        {"content", service("ready", "")},
+        {"desk", service("ready", "")}}},
       {"rings",
-       {{"camera.frames", stream(380)}, {"pose.hands", stream(90)},
-        {"landmarks.hands", stream(120)}, {"projection.frames", stream(360)}}},
+       {{"camera.frames", stream(380)},
+        {"pose.hands", stream(90)},
+        {"landmarks.hands", stream(120)},
+        {"projection.frames", stream(360)}}},
       {"stage_us", nlohmann::json::object()},
       {"light", {{"missed_refreshes", 0}, {"doubled_frames", 2}}},
       {"lost_images", {{"missing", 0}, {"skipped", 3}}},
       {"tracker_faults", {{"absent", 1}}},
       {"tracker_drift", {{"moved", false}, {"across_mm", 0.4}, {"turn_deg", 0.12}, {"places", 9}}}};
   status["services"]["landmarks"]["reason"] = "the model /models/hand.onnx is missing";
-  status["services"]["landmarks"]["log"] = {"12.3 landmarks error the model /models/hand.onnx is missing"};
+  status["services"]["landmarks"]["log"] = {
+      "12.3 landmarks error the model /models/hand.onnx is missing"};
   const std::pair<const char*, double> stages[] = {
-      {"capture", 410}, {"sample", 900}, {"detect", 2300}, {"predict", 12},  {"mask", 310},
-      {"register", 190}, {"skin", 45},   {"correct", 80},  {"draw", 620},    {"warp", 130},
+      {"capture", 410},  {"sample", 900}, {"detect", 2300}, {"predict", 12}, {"mask", 310},
+      {"register", 190}, {"skin", 45},    {"correct", 80},  {"draw", 620},   {"warp", 130},
       {"fill", 95},      {"frame", 1530}, {"present", 210}, {"light", 1400}};
   for (const auto& [name, us] : stages)
     status["stage_us"][name] = {{"p50", us}, {"p99", us * 1.7}, {"count", 3600}};
@@ -81,8 +92,8 @@ desk::Scene scene_at(double t) {
   for (int joint = 0; joint < msg::kJoints; ++joint) {
     const int finger = joint < 2 ? 2 : (joint - 2 + (joint < 6 ? 0 : 1)) / 5,
               along = joint < 2 ? joint : (joint - 2 + (joint < 6 ? 0 : 1)) % 5 + 1;
-    scene.joints_m[1][static_cast<std::size_t>(joint)] = {
-        0.01 * std::sin(t) + 0.02 * (finger - 2), 0.06 - 0.02 * along, 0.5};
+    scene.joints_m[1][static_cast<std::size_t>(joint)] = {0.01 * std::sin(t) + 0.02 * (finger - 2),
+                                                          0.06 - 0.02 * along, 0.5};
   }
   return scene;
 }
@@ -96,7 +107,8 @@ int main() {
   config::Rig rig;
   rig.name = "table" + std::to_string(::getpid());
   rig.desk.page.listen = "127.0.0.1:0";
-  const auto frames = ring<msg::CameraFrame>("camera.frames", false, msg::CameraFrame::bytes(720, 540));
+  const auto frames =
+      ring<msg::CameraFrame>("camera.frames", false, msg::CameraFrame::bytes(720, 540));
   const auto marks = ring<msg::StageMarks>("marks.projector", true);
   test::FakeRig fake(rig.name, status());
   fake.give("camera.frames", frames.fd());
@@ -124,7 +136,8 @@ int main() {
     }
     msg::StageMarks mark;
     mark.header.frame_id = turn;
-    mark.made_from.image_ns = now_ns() - 8'000'000 - static_cast<std::int64_t>(turn * 7919 % 4'000'000);
+    mark.made_from.image_ns =
+        now_ns() - 8'000'000 - static_cast<std::int64_t>(turn * 7919 % 4'000'000);
     mark.count = 1;
     mark.marks[0] = {msg::Stage::light, 0, now_ns(), now_ns()};
     marker.publish(mark);
