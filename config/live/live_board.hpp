@@ -25,6 +25,8 @@ struct Transition {
 /// settings at the same time, and none needs the supervisor once it has the ring. One thread.
 class LiveBoard {
  public:
+  /// Takes the ring. `filed`: the rig of `file`, beside which presets are kept.
+  LiveBoard(ipc::Segment ring, Rig filed, std::filesystem::path file);
   /// Opens the board of a rig. Errors: unavailable (it is not up), bad_data (of another version).
   static Result<LiveBoard> open(const std::string& rig);
 
@@ -56,7 +58,6 @@ class LiveBoard {
   const std::filesystem::path& file() const { return file_; }
 
  private:
-  LiveBoard(ipc::Segment ring, Rig filed, std::filesystem::path file);
   Result<ipc::Segment> again() const;
   Result<std::string> kept() const;
   Result<std::uint64_t> amend(const std::function<Result<void>(msg::LiveSettings&)>& change) const;

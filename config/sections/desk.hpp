@@ -41,8 +41,9 @@ struct DeskMidi {
 template <class Visitor>
 void describe(Visitor& visitor, DeskMidi& midi) {
   visitor.field("device", midi.device,
-                "The MIDI controller: a part of its name; one that does not exist gets a list of "
-                "them. Empty: none.");
+                "The MIDI controller: a part of its name, or \"jack:\" and a part of the name that "
+                "JACK gives it. If there is none, the log lists those that there are, and it is "
+                "looked for every second. Empty: none.");
 }
 
 /// [desk.page]

@@ -102,6 +102,10 @@ pkg_check_modules(alsa QUIET IMPORTED_TARGET alsa)
 handcast_found(found alsa_FOUND)
 handcast_feature(ALSA "delay of the light by a photodiode on a sound card, sound for content (libasound2-dev)" ${found})
 
+pkg_check_modules(rtmidi QUIET IMPORTED_TARGET rtmidi)
+handcast_found(found rtmidi_FOUND)
+handcast_feature(RTMIDI "MIDI controllers (librtmidi-dev)" ${found})
+
 pkg_check_modules(drm QUIET IMPORTED_TARGET libdrm)
 handcast_found(found drm_FOUND)
 handcast_feature(KMS "light on a projector without a window system (libdrm-dev)" ${found})

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "renderer/base/joint_math.hpp"
-#include "renderer/hand/hand_shape.hpp"
+#include "renderer/hand/hand_posture.hpp"
 #include "renderer/skin/skinning.hpp"
 
 namespace handcast::content {
@@ -22,12 +22,12 @@ constexpr std::int64_t kSmoothed_ns = 50'000'000;  ///< of the velocity
 
 void derive(HandState& hand, const glm::vec3& down) {
   const glm::mat3 axes = renderer::palm_axes(hand.joints_m, hand.side);
-  const auto shape = renderer::shape_of(hand.joints_m);
+  const auto posture = renderer::posture_of(hand.joints_m);
   hand.palm_normal = -axes[1];
   hand.gravity = glm::transpose(axes) * glm::normalize(down);
-  hand.pinch = shape.pinch;
-  hand.spread = shape.spread;
-  hand.curl = shape.curl;
+  hand.pinch = posture.pinch;
+  hand.spread = posture.spread;
+  hand.curl = posture.curl;
 }
 
 Result<Hands> Hands::load(const config::Rig& rig, const calib::Calibration& calibration) {

@@ -21,7 +21,7 @@ namespace handcast::content {
 /// Left and right.
 using BothHands = std::array<HandState, 2>;
 
-/// Fills what HandState derives from its side and its joints (renderer::shape_of(),
+/// Fills what HandState derives from its side and its joints (renderer::posture_of(),
 /// renderer::palm_axes()).
 ///
 /// - palm_normal: at right angles to the palm's axis, from the wrist to the mean of the knuckles,

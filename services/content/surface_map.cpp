@@ -68,6 +68,27 @@ void SurfaceMap::pad(renderer::Texture& texture) const {
   for (const auto& [to, from] : copies_) texels[to] = texels[from];
 }
 
+std::shared_ptr<const SurfaceMap> surface_map_of(const renderer::HandMesh& hand, int width,
+                                                 int height) {
+  struct Made {
+    std::vector<glm::vec2> uv;
+    std::vector<std::array<std::uint16_t, 3>> triangles;
+    int width, height;
+    std::shared_ptr<const SurfaceMap> map;
+  };
+  constexpr std::size_t kKept = 4;  // two hands, while the size changes
+  static std::vector<Made> all;
+  const auto found = std::ranges::find_if(all, [&](const Made& made) {
+    return made.width == width && made.height == height && made.uv == hand.uv &&
+           made.triangles == hand.triangles;
+  });
+  if (found != all.end()) return found->map;
+  if (all.size() == kKept) all.erase(all.begin());
+  all.push_back(
+      {hand.uv, hand.triangles, width, height, std::make_shared<SurfaceMap>(hand, width, height)});
+  return all.back().map;
+}
+
 std::vector<glm::vec3> rest_positions_mm(const renderer::HandMesh& hand) {
   const glm::mat4 wrist_from_model = glm::inverse(hand.rest[kWrist]);
   std::vector<glm::vec3> places;

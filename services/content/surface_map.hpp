@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,10 @@ class SurfaceMap {
   std::vector<Copy> copies_;
   std::vector<std::uint32_t> empty_;
 };
+
+/// The map of a texture, which is made once for all sources. One thread.
+std::shared_ptr<const SurfaceMap> surface_map_of(const renderer::HandMesh& hand, int width,
+                                                 int height);
 
 /// The positions of the vertices at rest in the axes of the wrist, mm: x to the right, y out of the
 /// back, z to the arm.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
-#include "renderer/hand/hand_shape.hpp"
+#include "renderer/hand/hand_posture.hpp"
 
 namespace handcast::desk {
 namespace {
@@ -80,13 +80,13 @@ void Gestures::see(const msg::HandPose& pose, std::int64_t origin_ns) {
   memory.palm_m = joints[kPalm];
   memory.seen_ns = origin_ns;
 
-  const auto shape = renderer::shape_of(joints);
-  gesture.pinch = shape.pinch;
-  gesture.spread = shape.spread;
-  gesture.fist = shape.curl;
+  const auto posture = renderer::posture_of(joints);
+  gesture.pinch = posture.pinch;
+  gesture.spread = posture.spread;
+  gesture.fist = posture.curl;
   gesture.palm_up = -glm::dot(renderer::palm_axes(joints, pose.side)[1], up_);
-  const float others = std::max({shape.reach[1], shape.reach[2], shape.reach[3]});
-  const float points = shape.reach[0] > 0.9f ? 1 - glm::smoothstep(0.6f, 0.85f, others) : 0;
+  const float others = std::max({posture.reach[1], posture.reach[2], posture.reach[3]});
+  const float points = posture.reach[0] > 0.9f ? 1 - glm::smoothstep(0.6f, 0.85f, others) : 0;
   if (memory.pinch.rises(gesture.pinch, 0.85f, 0.5f)) note(hand, "pinch");
   if (memory.fist.rises(gesture.fist, 0.85f, 0.5f)) note(hand, "fist");
   if (memory.open.rises(gesture.fist, 0.1f, 0.4f)) note(hand, "open");

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "renderer/hand/hand_mesh.hpp"
-#include "services/desk/surface.hpp"
+#include "services/desk/base/surface.hpp"
 
 namespace handcast::desk {
 

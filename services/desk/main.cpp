@@ -10,7 +10,9 @@
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/desk/cues/cues.hpp"
 #include "services/desk/gestures.hpp"
+#include "services/desk/midi/midi.hpp"
 #include "services/desk/osc/osc.hpp"
+#include "services/desk/page/page.hpp"
 #include "services/desk/rig_panel.hpp"
 #include "services/runtime/context.hpp"
 
@@ -34,11 +36,13 @@ static std::vector<std::unique_ptr<desk::Surface>> open_surfaces(
   const auto add = [&](std::unique_ptr<desk::Surface> surface) {
     if (surface) surfaces.push_back(std::move(surface));
   };
-  const auto place = must(state_folder()) / (rig.name + ".cue");
-  auto cues = must(desk::open_cues(rig, place, panel));
+  const auto remembered = must(state_folder());
+  auto cues = must(desk::open_cues(rig, remembered / (rig.name + ".cue"), panel));
   desk::CueDeck* const deck = cues.get();
   add(std::move(cues));
   add(must(desk::open_osc(rig, calibration.camera, panel, deck)));
+  add(must(desk::open_midi(rig, remembered / (rig.name + ".midi.toml"), panel, deck)));
+  add(must(desk::open_page(rig, panel, deck)));
   return surfaces;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/live/live_board.hpp"
-#include "services/desk/panel.hpp"
+#include "services/desk/base/panel.hpp"
 
 namespace handcast::desk {
 

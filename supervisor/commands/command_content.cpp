@@ -9,6 +9,7 @@
 #include "config/content_chain.hpp"
 #include "config/live/live_board.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/input_file.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/client/stream.hpp"
@@ -32,14 +33,24 @@ struct Wish {
   double transition_s = -1;
 };
 
-std::string looks() {
-  std::vector<std::string> names;
+/// What handcast brings along, by what it is.
+void print_looks() {
+  constexpr std::array kKinds{std::pair("Generator", "looks"), std::pair("Filter", "filters"),
+                              std::pair("Transition", "transitions")};
+  std::array<std::vector<std::string>, kKinds.size()> names;
   std::error_code absent;
   const auto folder = program_folder() / "../share/handcast/looks";
-  for (const auto& file : std::filesystem::directory_iterator(folder, absent))
-    if (file.path().extension() == ".fs") names.push_back(file.path().stem().string());
-  std::ranges::sort(names);
-  return join(names, ", ");
+  for (const auto& file : std::filesystem::directory_iterator(folder, absent)) {
+    if (file.path().extension() != ".fs") continue;
+    const auto text = read_input(file.path(), 1 << 20).value_or("");
+    for (std::size_t i = 0; i < kKinds.size(); ++i)
+      if (text.find(fmt::format("\"CATEGORIES\": [\"{}\"", kKinds[i].first)) != text.npos)
+        names[i].push_back(file.path().stem().string());
+  }
+  for (std::size_t i = 0; i < kKinds.size(); ++i) {
+    std::ranges::sort(names[i]);
+    fmt::print("{}: {}\n", kKinds[i].second, join(names[i], ", "));
+  }
 }
 
 /// The changes of settings that show what is wished for.
@@ -109,7 +120,7 @@ int show(const std::string& rig, bool as_json) {
   const auto state = states->latest(Deadline::in(2s));
   if (!state) return complain(state.error());
   print(**state, as_json);
-  if (!as_json) fmt::print("looks  {}\n", looks());
+  if (!as_json) print_looks();
   return kExitDone;
 }
 
@@ -141,7 +152,8 @@ int run_content(const Arguments& arguments) {
   auto line = command_line_of(
       "content",
       "WHAT is written as content.left in a rig file: a look, a picture, a film, a shader, or "
-      "several joined by \" | \".\nWithout WHAT: prints what is on the hands, and the looks.\n"
+      "several joined by \" | \".\nWithout WHAT: prints what is on the hands, and the looks, "
+      "filters and transitions.\n"
       "handcast content --try SOURCE... draws sources without a rig; --try --help explains it.");
   Wish wish;
   std::vector<std::string> words;

@@ -1,5 +1,5 @@
 /*{
-  "DESCRIPTION": "Lights what is below it as a surface of the hand: a movable light, gloss, relief, shadows of the fingers, a rim, even brightness, bones.",
+  "DESCRIPTION": "Lights what is below it as a surface of the hand: a movable light, gloss, relief, shadows of the fingers, a rim, bones.",
   "CREDIT": "handcast",
   "ISFVSN": "2",
   "CATEGORIES": ["Filter"],
@@ -16,11 +16,11 @@
     {"NAME": "roughness", "LABEL": "Roughness", "TYPE": "float", "DEFAULT": 0.35, "MIN": 0.05, "MAX": 1.0},
     {"NAME": "metalness", "LABEL": "Metalness", "TYPE": "float", "DEFAULT": 0.0, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "relief", "LABEL": "Relief by brightness, mm", "TYPE": "float", "DEFAULT": 0.6, "MIN": -3.0, "MAX": 3.0},
-    {"NAME": "normals", "LABEL": "Normal map", "TYPE": "image"},
+    {"NAME": "normals", "LABEL": "Normal map, green is up", "TYPE": "image"},
+    {"NAME": "roughnesses", "LABEL": "Roughness map, white is rough", "TYPE": "image"},
     {"NAME": "shadows", "LABEL": "Shadows", "TYPE": "float", "DEFAULT": 0.9, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "softness", "LABEL": "Softness of shadows", "TYPE": "float", "DEFAULT": 0.12, "MIN": 0.01, "MAX": 0.5},
     {"NAME": "rim", "LABEL": "Rim", "TYPE": "float", "DEFAULT": 0.25, "MIN": 0.0, "MAX": 2.0},
-    {"NAME": "evenness", "LABEL": "Even brightness", "TYPE": "float", "DEFAULT": 0.0, "MIN": 0.0, "MAX": 1.0},
     {"NAME": "skeleton", "LABEL": "Bones", "TYPE": "float", "DEFAULT": 0.0, "MIN": 0.0, "MAX": 1.0}
   ],
   "PASSES": [{"TARGET": "bones", "ONCE": true}, {"TARGET": "shade", "WIDTH": "$WIDTH/4", "HEIGHT": "$HEIGHT/4"}, {}]
@@ -76,9 +76,8 @@ void main() {
     return;
   }
   if (PASSINDEX == 1) {
-    ivec2 full = min(4 * texel + 2, textureSize(hand_position, 0) - 1);
-    vec3 at = texelFetch(hand_position, full, 0).xyz, normal = texelFetch(hand_surface_normal, full, 0).xyz;
-    int own = int(texelFetch(hand_bone, full, 0).x + 0.5);
+    vec3 at = texture(hand_position, isf_FragNormCoord).xyz, normal = texture(hand_surface_normal, isf_FragNormCoord).xyz;
+    int own = int(texelFetch(hand_bone, min(4 * texel + 2, textureSize(hand_bone, 0) - 1), 0).x + 0.5);
     vec3 ray = to_light(at);
     float taken = 0.0;
     for (int j = 2; j < 25; ++j) {
@@ -91,10 +90,10 @@ void main() {
     gl_FragColor = vec4(taken, 0.0, 0.0, 1.0);
     return;
   }
-  vec4 base = texelFetch(inputImage, texel, 0), place = texelFetch(hand_position, texel, 0);
+  vec4 base = texelFetch(inputImage, texel, 0), place = texture(hand_position, isf_FragNormCoord);
   gl_FragColor = base;
   if (hand_there == 0 || place.w == 0.0) return;
-  vec3 at = place.xyz, smooth_normal = texelFetch(hand_surface_normal, texel, 0).xyz, normal = smooth_normal;
+  vec3 at = place.xyz, smooth_normal = normalize(texture(hand_surface_normal, isf_FragNormCoord).xyz), normal = smooth_normal;
 
   // Relief: the slope of the brightness along the surface.
   vec3 along_x = dFdx(at), along_y = dFdy(at);
@@ -118,7 +117,8 @@ void main() {
   float nl = max(dot(normal, ray), 0.0), nv = max(dot(normal, view), 0.02), nh = max(dot(normal, middle), 0.0), vh = max(dot(view, middle), 0.0);
   nl *= smoothstep(-0.05, 0.1, dot(smooth_normal, ray));
   // GGX: distribution, masking by Smith (height-correlated), Fresnel by Schlick.
-  float a = max(roughness * roughness, 0.004), a2 = a * a, spread = nh * nh * (a2 - 1.0) + 1.0;
+  vec4 rough = texture(roughnesses, isf_FragNormCoord);
+  float r = roughness * (rough.a > 0.0 ? rough.g : 1.0), a = max(r * r, 0.004), a2 = a * a, spread = nh * nh * (a2 - 1.0) + 1.0;
   float d = a2 / (3.14159265 * spread * spread);
   float v = 0.5 / max(nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2), 1e-4);
   float slant = max(1.0 - vh, 0.0), grazing = slant * slant, edge = max(1.0 - nv, 0.0);
@@ -132,12 +132,5 @@ void main() {
   light += arm * rim * edge * edge * edge * colour.rgb;
 
   light = mix(light, vec3(0.8, 0.95, 1.0), skeleton * rest.r);
-
-  // Even brightness: skin that gets more of the projector's light is dimmed to what skin gets that
-  // faces away by 60 degrees; skin that gets less than that stays as it is.
-  if (evenness > 0.0) {
-    float ratio = dot(hand_joint[0], hand_joint[0]) / max(dot(at, at), 1e-6);
-    light *= mix(1.0, 0.5 / max(0.5, max(dot(smooth_normal, view), 0.0) * ratio), evenness);
-  }
   gl_FragColor = vec4(clamp(light, 0.0, 1.0), base.a);
 }

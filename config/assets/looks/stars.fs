@@ -69,7 +69,7 @@ void main() {
   }
   vec2 move = vec2(drift, 0.35 * drift) * TIME;
   if (PASSINDEX == 1) {
-    vec3 here = texelFetch(hand_position, min(4 * texel + 2, textureSize(hand_position, 0) - 1), 0).xyz;
+    vec3 here = texture(hand_position, isf_FragNormCoord).xyz;
     vec2 deep = 600.0 * here.xy / max(here.z, 0.1);
     float cloud = noise(mat2(0.6, 0.8, -0.8, 0.6) * (0.022 * deep) + 0.01 * move) * 0.65 + noise(mat2(0.8, -0.6, 0.6, 0.8) * (0.06 * deep) - 0.012 * move) * 0.35;
     gl_FragColor.rgb = nebula.rgb * smoothstep(0.38, 0.85, cloud) * 0.75 + vec3(0.5, 0.06, 0.32) * smoothstep(0.55, 0.9, noise(0.035 * deep + 40.0)) * 0.55;
@@ -77,7 +77,7 @@ void main() {
     return;
   }
   vec4 it = texelFetch(figure, texel, 0);
-  vec3 at = texelFetch(hand_position, texel, 0).xyz;
+  vec3 at = texture(hand_position, isf_FragNormCoord).xyz;
   vec2 near = 1000.0 * at.xy, far = 600.0 * at.xy / max(at.z, 0.1);
   vec3 light = stars(far + 0.3 * move, 6.5, 0.85, density, 1.0) * 0.7 + stars(mix(near, far, 0.5) + 0.7 * move, 11.0, 1.3, density, 20.0) * 0.9;
   light += stars(near + 1.3 * move, 21.0, 2.1, density, 50.0);

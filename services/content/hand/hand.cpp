@@ -30,9 +30,9 @@ class HandSource final : public SettableSource {
       : SettableSource(
             {plain_parameter("colour", "Colour of white", Parameter::Kind::colour, {1, 1, 1, 1}),
              number_parameter("gain", "Factor of the camera's levels", 0, 10, 1)}),
-        map_(*opening.meshes[static_cast<std::size_t>(opening.side)], opening.width,
-             opening.height),
-        levels_(map_.texels().size(), kNeverSeen) {}
+        map_(surface_map_of(*opening.meshes[static_cast<std::size_t>(opening.side)], opening.width,
+                            opening.height)),
+        levels_(map_->texels().size(), kNeverSeen) {}
 
   Needs needs() const override { return {.surface = true, .camera = true}; }
 
@@ -58,7 +58,7 @@ class HandSource final : public SettableSource {
     auto camera = viewer_of(*view.lens);
     camera.width_px = image.width;
     camera.height_px = image.height;
-    const auto seen = seen_texels(camera, map_, *view.hand, view.other);
+    const auto seen = seen_texels(camera, *map_, *view.hand, view.other);
     for (const auto& [which, px] : seen) levels_[which] = level_at(image, px);
     return !seen.empty();
   }
@@ -66,16 +66,16 @@ class HandSource final : public SettableSource {
   void show(renderer::Texture& out) const {
     const auto tint = numbers("colour");
     const auto gain = static_cast<float>(number("gain")) / 255;
-    const auto texels = map_.texels();
+    const auto texels = map_->texels();
     for (std::size_t i = 0; i < texels.size(); ++i) {
       const float level = levels_[i] * gain;
       const glm::vec4 colour(level * glm::vec3(tint[0], tint[1], tint[2]), tint[3]);
       out.pixels()[texels[i].index] = levels_[i] == kNeverSeen ? 0 : texel_of(colour);
     }
-    map_.pad(out);
+    map_->pad(out);
   }
 
-  SurfaceMap map_;
+  std::shared_ptr<const SurfaceMap> map_;
   std::vector<float> levels_;  ///< per texel of the map, 0..255
   std::uint64_t last_id_ = std::numeric_limits<std::uint64_t>::max();
 };

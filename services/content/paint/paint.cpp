@@ -35,12 +35,12 @@ class PaintSource final : public SettableSource {
              number_parameter("fade", "Time until a stroke has gone, s; 0: it stays", 0, 600, 0),
              plain_parameter("clear", "Clear", Parameter::Kind::event, {0})}),
         hand_(*opening.meshes[static_cast<std::size_t>(opening.side)]),
-        map_(hand_, opening.width, opening.height),
+        map_(surface_map_of(hand_, opening.width, opening.height)),
         places_mm_(rest_positions_mm(hand_)),
         normals_(rest_normals(hand_)),
-        dry_(map_.texels().size(), glm::vec4(0)),
-        wet_(map_.texels().size(), 0) {
-    for (const SurfaceTexel& texel : map_.texels())
+        dry_(map_->texels().size(), glm::vec4(0)),
+        wet_(map_->texels().size(), 0) {
+    for (const SurfaceTexel& texel : map_->texels())
       at_rest_.push_back({texel.of<glm::vec3>(places_mm_), texel.of<glm::vec3>(normals_)});
   }
 
@@ -146,17 +146,17 @@ class PaintSource final : public SettableSource {
   }
 
   void show(renderer::Texture& out) const {
-    const auto texels = map_.texels();
+    const auto texels = map_->texels();
     for (std::size_t i = 0; i < texels.size(); ++i) {
       const glm::vec4 colour = over(i);
       out.pixels()[texels[i].index] =
           colour.a > 0 ? texel_of({glm::vec3(colour) / colour.a, colour.a}) : 0;
     }
-    map_.pad(out);
+    map_->pad(out);
   }
 
   const renderer::HandMesh& hand_;
-  SurfaceMap map_;
+  std::shared_ptr<const SurfaceMap> map_;
   std::vector<glm::vec3> places_mm_, normals_;  ///< per vertex
   std::vector<Touch> at_rest_;                  ///< per texel of the map
   std::vector<glm::vec4> dry_;                  ///< per texel: ended strokes, premultiplied

@@ -9,8 +9,10 @@
 namespace handcast::content::shader {
 namespace {
 
-std::weak_ptr<Graphics>& shared_graphics() {
-  static std::weak_ptr<Graphics> graphics;
+/// Stays open when no shader is shown, because opening takes a fifth of a second; never destroyed,
+/// because OpenGL may be gone at the exit.
+std::shared_ptr<Graphics>& shared_graphics() {
+  static auto& graphics = *new std::shared_ptr<Graphics>;
   return graphics;
 }
 
@@ -36,7 +38,7 @@ std::uint32_t straight(std::uint32_t texel) {
 }  // namespace
 
 Result<std::shared_ptr<Graphics>> Graphics::open() {
-  if (auto shared = shared_graphics().lock(); shared && !shared->context_->lost()) return shared;
+  if (const auto& shared = shared_graphics(); shared && !shared->context_->lost()) return shared;
   auto context = gl::Context::open();
   if (!context)
     return fail(Errc::unavailable,

@@ -91,7 +91,15 @@ HandView::HandView(const std::set<std::string, std::less<>>& words, const Openin
     if (needs_places && meshes_[i]) places_[i] = places_on(*meshes_[i], width_, height_);
   }
   for (const auto& sampler : samplers_) is_live_ |= is_live_map(kind_of(sampler));
-  if (!samplers_.empty() && meshes_[0]) find_texels();
+  if (samplers_.empty() || !meshes_[0]) return;
+  facing_ = facing_of(*meshes_[0]);
+  rest_mm_ = rest_positions_mm(*meshes_[0]);
+  for (const auto& sampler : samplers_) {
+    const bool is_live = is_live_map(kind_of(sampler));
+    auto& layout = is_live ? live_ : at_rest_;
+    const int part = is_live ? 2 : 1;
+    if (!layout) layout = lay_out(*meshes_[0], (width_ + 1) / part, (height_ + 1) / part);
+  }
 }
 
 bool HandView::mentions(std::string_view prefix, std::string_view name) const {
@@ -99,26 +107,24 @@ bool HandView::mentions(std::string_view prefix, std::string_view name) const {
 }
 
 /// Finds the texels of the charts, and those beside them.
-void HandView::find_texels() {
-  const auto& mesh = *meshes_[0];
-  map_.emplace(mesh, width_, height_);
-  facing_ = facing_of(mesh);
-  rest_mm_ = rest_positions_mm(mesh);
-  renderer::Image<std::uint8_t> on(width_, height_), off(width_, height_, 1);
-  for (const auto& texel : map_->texels()) {
+HandView::Layout HandView::lay_out(const renderer::HandMesh& mesh, int width, int height) {
+  Layout layout{width, height, surface_map_of(mesh, width, height), {}, {}};
+  renderer::Image<std::uint8_t> on(width, height), off(width, height, 1);
+  for (const auto& texel : layout.surface->texels()) {
     on.pixels()[texel.index] = 1;
     off.pixels()[texel.index] = 0;
   }
   constexpr int kReach = renderer::cpu::NearestPixel::kLargestReach;
   renderer::cpu::NearestPixel nearest;
   for (const auto& way : nearest.find(on.view(), off.view(), kReach))
-    beside_.push_back({static_cast<std::uint32_t>(way.y * width_ + way.x),
-                       static_cast<std::uint32_t>((way.y + way.dy) * width_ + way.x + way.dx),
-                       std::sqrt(static_cast<float>(way.squared_px))});
-  edge_px_.assign(on.pixels().size(), static_cast<float>(kReach));
+    layout.beside.push_back({static_cast<std::uint32_t>(way.y * width + way.x),
+                             static_cast<std::uint32_t>((way.y + way.dy) * width + way.x + way.dx),
+                             std::sqrt(static_cast<float>(way.squared_px))});
+  layout.edge_px.assign(on.pixels().size(), static_cast<float>(kReach));
   for (const auto& way : nearest.find(off.view(), on.view(), kReach))
-    edge_px_[static_cast<std::size_t>(way.y) * static_cast<std::size_t>(width_) +
-             static_cast<std::size_t>(way.x)] = std::sqrt(static_cast<float>(way.squared_px));
+    layout.edge_px[static_cast<std::size_t>(way.y) * static_cast<std::size_t>(width) +
+                   static_cast<std::size_t>(way.x)] = std::sqrt(static_cast<float>(way.squared_px));
+  return layout;
 }
 
 /// Under a joint is the texel of the palm, and of the back, that is nearest to it as seen from
@@ -127,12 +133,12 @@ HandView::Places HandView::places_on(const renderer::HandMesh& mesh, int width, 
   Places places;
   for (int j = 0; j < kJoints; ++j)
     places.rest_mm[j] = in_wrist_mm(mesh, glm::vec3(mesh.rest[j][3]));
-  const SurfaceMap map(mesh, width, height);
+  const auto map = surface_map_of(mesh, width, height);
   const auto facing = facing_of(mesh);
   const auto rest_mm = rest_positions_mm(mesh);
   std::array<std::array<float, kJoints>, 2> nearest{};
   for (auto& each : nearest) each.fill(1e9f);
-  for (const auto& texel : map.texels()) {
+  for (const auto& texel : map->texels()) {
     const bool is_back = facing[mesh.chart[texel.corners[0]]] > 0;
     const glm::vec3 at = texel.of<glm::vec3>(rest_mm);
     const std::uint32_t row = texel.index / static_cast<std::uint32_t>(width);
@@ -173,36 +179,35 @@ glm::vec4 HandView::at_rest(const SurfaceTexel& texel) const {
   return {texel.of<glm::vec3>(rest_mm_), facing_[meshes_[0]->chart[texel.corners[0]]]};
 }
 
-glm::vec4 HandView::on_bone(const SurfaceTexel& texel) const {
+glm::vec4 HandView::on_bone(const SurfaceTexel& texel, float edge_px) const {
   const auto& mesh = *meshes_[0];
   const int joint = strongest_joint(mesh, texel);
   const glm::vec3 begin = in_wrist_mm(mesh, glm::vec3(mesh.rest[joint][3])),
                   way = in_wrist_mm(mesh, glm::vec3(mesh.rest[next_joint(joint)][3])) - begin;
   const float length2 = std::max(glm::dot(way, way), 1e-6f);
   const float along = glm::dot(texel.of<glm::vec3>(rest_mm_) - begin, way) / length2;
-  return {static_cast<float>(joint), edge_px_[texel.index], std::clamp(along, 0.f, 1.f), 1};
+  return {static_cast<float>(joint), edge_px, std::clamp(along, 0.f, 1.f), 1};
 }
 
 /// Draws a map into scratch_, row 0 at the bottom.
-void HandView::draw_map(std::size_t index, const HandState& hand) {
+void HandView::draw_map(std::size_t index, const Layout& layout, const HandState& hand) {
   const MapKind kind = kind_of(samplers_[index]);
-  scratch_.assign(edge_px_.size(), glm::vec4(0));
   const auto place = [&](std::uint32_t texel) -> glm::vec4& {
-    const auto width = static_cast<std::uint32_t>(width_),
-               row = static_cast<std::uint32_t>(height_) - 1 - texel / width;
+    const auto width = static_cast<std::uint32_t>(layout.width),
+               row = static_cast<std::uint32_t>(layout.height) - 1 - texel / width;
     return scratch_[row * width + texel % width];
   };
   const auto facing = [&](const SurfaceTexel& texel) {
     return facing_[meshes_[0]->chart[texel.corners[0]]];
   };
-  for (const auto& texel : map_->texels()) {
+  for (const auto& texel : layout.surface->texels()) {
     glm::vec4& out = place(texel.index);
     if (kind == kRest) out = at_rest(texel);
-    if (kind == kBone) out = on_bone(texel);
+    if (kind == kBone) out = on_bone(texel, layout.edge_px[texel.index]);
     if (kind == kPosition) out = glm::vec4(texel.of(hand.positions_m), facing(texel));
     if (kind == kNormal) out = glm::vec4(glm::normalize(texel.of(hand.normals)), facing(texel));
   }
-  for (const auto& beside : beside_) {
+  for (const auto& beside : layout.beside) {
     glm::vec4& out = place(beside.to);
     out = place(beside.from);
     if (kind == kBone) out.y = -beside.distance_px;
@@ -213,12 +218,15 @@ void HandView::update(Graphics& graphics, const Moment& moment) {
   for (std::size_t i = 0; i < samplers_.size(); ++i) {
     Texels& image = images_[i];
     const bool is_live = is_live_map(kind_of(samplers_[i]));
-    const bool is_possible = map_ && (!is_live || !moment.hand->positions_m.empty());
+    const auto& layout = is_live ? live_ : at_rest_;
+    const bool is_possible = layout && (!is_live || !moment.hand->positions_m.empty());
     if (image.width > 0 && (!is_live || !is_possible)) continue;
-    if (image.width == 0) image = graphics.make_texels(GL_RGBA32F, width_, height_);
-    scratch_.assign(static_cast<std::size_t>(width_) * height_, glm::vec4(0));
-    if (is_possible) draw_map(i, *moment.hand);
-    graphics.functions().TextureSubImage2D(image.image.name(), 0, 0, 0, width_, height_, GL_RGBA,
+    const int width = layout ? layout->width : 1, height = layout ? layout->height : 1;
+    if (image.width == 0) image = graphics.make_texels(GL_RGBA32F, width, height);
+    scratch_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+                    glm::vec4(0));
+    if (is_possible) draw_map(i, *layout, *moment.hand);
+    graphics.functions().TextureSubImage2D(image.image.name(), 0, 0, 0, width, height, GL_RGBA,
                                            GL_FLOAT, scratch_.data());
   }
 }

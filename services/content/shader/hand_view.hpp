@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
-#include <optional>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -34,7 +34,10 @@ namespace handcast::content::shader {
 ///                                    outline of the chart, at most 32, negative beyond it; z: 0..1
 ///                                    along the bone that begins there; w: 1, far from the charts 0
 ///     sampler2D hand_position        xyz: camera space, m; w as above
-///     sampler2D hand_surface_normal  unit length, camera space
+///     sampler2D hand_surface_normal  about unit length, camera space
+///
+/// The last two have half the width and height of the picture, as they are drawn for each picture:
+/// read them with texture().
 class HandView {
  public:
   /// For a shader with these identifiers. `opening`: size, meshes and side; without meshes, maps
@@ -68,24 +71,29 @@ class HandView {
     std::uint32_t to, from;
     float distance_px;
   };
+  /// The hand in a map of a size.
+  struct Layout {
+    int width, height;
+    std::shared_ptr<const SurfaceMap> surface;
+    std::vector<Beside> beside;
+    std::vector<float> edge_px;  ///< per texel of the map
+  };
   bool mentions(std::string_view prefix, std::string_view name) const;
-  void find_texels();
+  static Layout lay_out(const renderer::HandMesh& mesh, int width, int height);
   static Places places_on(const renderer::HandMesh& mesh, int width, int height);
   void set_hand(const UserProgram& program, const std::string& prefix, const HandState& hand,
                 const Places& places) const;
   glm::vec4 at_rest(const SurfaceTexel& texel) const;
-  glm::vec4 on_bone(const SurfaceTexel& texel) const;
-  void draw_map(std::size_t index, const HandState& hand);
+  glm::vec4 on_bone(const SurfaceTexel& texel, float edge_px) const;
+  void draw_map(std::size_t index, const Layout& layout, const HandState& hand);
 
   std::set<std::string, std::less<>> words_;
   std::array<const renderer::HandMesh*, 2> meshes_;  ///< that wears it, the other
   Side side_;
   int width_, height_;
-  std::optional<SurfaceMap> map_;
-  std::vector<float> facing_;       ///< per chart: 1 on the back, -1 on the palm
-  std::vector<float> edge_px_;      ///< per texel of the picture
-  std::vector<glm::vec3> rest_mm_;  ///< per vertex
-  std::vector<Beside> beside_;
+  std::optional<Layout> at_rest_, live_;  ///< if there are such maps
+  std::vector<float> facing_;             ///< per chart: 1 on the back, -1 on the palm
+  std::vector<glm::vec3> rest_mm_;        ///< per vertex
   std::array<Places, 2> places_;
   std::vector<std::string> samplers_;
   std::vector<Texels> images_;

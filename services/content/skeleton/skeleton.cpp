@@ -31,8 +31,8 @@ class SkeletonSource final : public SettableSource {
             {plain_parameter("colour", "Colour", Parameter::Kind::colour, {0.75, 0.9, 1, 1}),
              plain_parameter("fast", "Colour in motion", Parameter::Kind::colour, {1, 0.3, 0.1, 1}),
              number_parameter("width", "Width of a bone, mm", 0.5, 20, 3)}),
-        map_(*opening.meshes[static_cast<std::size_t>(opening.side)], opening.width,
-             opening.height) {
+        map_(surface_map_of(*opening.meshes[static_cast<std::size_t>(opening.side)], opening.width,
+                            opening.height)) {
     find_texels(*opening.meshes[static_cast<std::size_t>(opening.side)]);
   }
 
@@ -55,7 +55,7 @@ class SkeletonSource final : public SettableSource {
                            coverage(texel.from_joint_mm, width_mm));
       out.pixels()[texel.index] = texel_of(colour);
     }
-    map_.pad(out);
+    map_->pad(out);
     return true;
   }
 
@@ -77,7 +77,7 @@ class SkeletonSource final : public SettableSource {
       const glm::vec3 place = 1000.f * glm::vec3(wrist_from_model * hand.rest[joint][3]);
       joints_mm[joint] = {place.x, place.z};
     }
-    for (const SurfaceTexel& texel : map_.texels()) {
+    for (const SurfaceTexel& texel : map_->texels()) {
       const glm::vec3 place = texel.of<glm::vec3>(places_mm);
       const auto lit = nearest({place.x, place.z}, joints_mm, texel.index);
       if (std::min(lit.from_bone_mm, lit.from_joint_mm) < kFarthest_mm) texels_.push_back(lit);
@@ -119,7 +119,7 @@ class SkeletonSource final : public SettableSource {
     return has_changed;
   }
 
-  SurfaceMap map_;
+  std::shared_ptr<const SurfaceMap> map_;
   std::vector<LitTexel> texels_;
   std::array<glm::vec3, kJoints> last_m_{};  ///< relative to the wrist
   std::array<float, kJoints> speed_m_s_{};

@@ -124,11 +124,11 @@ class ViewSource final : public SettableSource {
         inner_(std::move(inner)),
         projector_(std::move(projector)),
         mesh_(*opening.meshes[static_cast<std::size_t>(opening.side)]),
-        map_(mesh_, opening.width, opening.height),
+        map_(surface_map_of(mesh_, opening.width, opening.height)),
         graph_(mesh_),
         picture_(inner_opening.width, inner_opening.height),
-        texels_(map_.texels().size()),
-        is_lit_(map_.texels().size()) {
+        texels_(map_->texels().size()),
+        is_lit_(map_->texels().size()) {
     const auto own = SettableSource::parameters(), its = inner_->parameters();
     all_.assign(own.begin(), own.end());
     all_.insert(all_.end(), its.begin(), its.end());
@@ -175,7 +175,7 @@ class ViewSource final : public SettableSource {
     if (since_s_ < 0) since_s_ = moment.time_s;
     const glm::vec2 scale(static_cast<float>(picture_.width()) / projector_.width_px,
                           static_cast<float>(picture_.height()) / projector_.height_px);
-    for (const auto& [which, px] : seen_texels(projector_, map_, *moment.hand, moment.other)) {
+    for (const auto& [which, px] : seen_texels(projector_, *map_, *moment.hand, moment.other)) {
       texels_[which] = sample(picture_, (px + 0.5f) * scale - 0.5f);
       is_lit_[which] = true;
     }
@@ -184,7 +184,7 @@ class ViewSource final : public SettableSource {
   }
 
   void show(renderer::Texture& out) const {
-    const auto texels = map_.texels();
+    const auto texels = map_->texels();
     const bool is_filled = number("fill") != 0;
     const auto around = is_filled ? colours_around() : std::vector<glm::vec4>();
     for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -194,12 +194,12 @@ class ViewSource final : public SettableSource {
       else
         texel = is_filled ? packed(texels[i].of(std::span(around))) : 0;
     }
-    map_.pad(out);
+    map_->pad(out);
   }
 
   /// Per vertex: the levels of the lit texels around it, or those of the nearest lit skin.
   std::vector<glm::vec4> colours_around() const {
-    const auto texels = map_.texels();
+    const auto texels = map_->texels();
     std::vector<glm::vec4> sums(mesh_.vertex_count(), glm::vec4(0));
     std::vector<float> weights(mesh_.vertex_count());
     for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -217,7 +217,7 @@ class ViewSource final : public SettableSource {
   std::vector<Parameter> all_;  ///< its own, and those of the inner source
   Viewer projector_;
   const renderer::HandMesh& mesh_;
-  SurfaceMap map_;
+  std::shared_ptr<const SurfaceMap> map_;
   SkinGraph graph_;
   renderer::Texture picture_;          ///< of the inner source
   std::uint64_t pictures_ = 0;         ///< that it has drawn

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "config/settings/document.hpp"
-#include "services/desk/panel.hpp"
+#include "services/desk/base/panel.hpp"
 
 namespace handcast::desk {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
-#include "services/desk/panel.hpp"
+#include "services/desk/base/panel.hpp"
 
 namespace handcast::desk::cues {
 

@@ -6,9 +6,9 @@
 
 #include "config/rig.hpp"
 #include "ipc/base/result.hpp"
-#include "services/desk/cue_deck.hpp"
-#include "services/desk/panel.hpp"
-#include "services/desk/surface.hpp"
+#include "services/desk/base/cue_deck.hpp"
+#include "services/desk/base/panel.hpp"
+#include "services/desk/base/surface.hpp"
 
 namespace handcast::desk {
 

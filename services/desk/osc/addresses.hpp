@@ -8,8 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "services/desk/base/panel.hpp"
 #include "services/desk/osc/packet.hpp"
-#include "services/desk/panel.hpp"
 
 namespace handcast::desk::osc {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/desk/panel.hpp"
+#include "services/desk/base/panel.hpp"
 
 namespace handcast::desk::osc {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "services/desk/base/cue_deck.hpp"
 #include "services/desk/controls/complaints.hpp"
-#include "services/desk/cue_deck.hpp"
 #include "services/desk/osc/addresses.hpp"
 
 namespace handcast::desk::osc {

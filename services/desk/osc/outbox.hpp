@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "services/desk/base/surface.hpp"
 #include "services/desk/osc/addresses.hpp"
-#include "services/desk/surface.hpp"
 
 namespace handcast::desk::osc {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "calib/calibration.hpp"
-#include "services/desk/surface.hpp"
+#include "services/desk/base/surface.hpp"
 
 namespace handcast::desk::osc {
 

@@ -5,8 +5,8 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/control/desk_address.hpp"
-#include "services/desk/cue_deck.hpp"
-#include "services/desk/panel.hpp"
+#include "services/desk/base/cue_deck.hpp"
+#include "services/desk/base/panel.hpp"
 
 namespace handcast::desk {
 

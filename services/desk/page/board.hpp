@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/desk/panel.hpp"
+#include "services/desk/base/panel.hpp"
 
 namespace handcast::desk {
 

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "calib/calibration.hpp"
-#include "services/desk/surface.hpp"
+#include "services/desk/base/surface.hpp"
 
 namespace handcast::desk {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <thread>
 
-#include "services/desk/cue_deck.hpp"
+#include "services/desk/base/cue_deck.hpp"
+#include "services/desk/base/panel.hpp"
+#include "services/desk/base/surface.hpp"
 #include "services/desk/page/board.hpp"
-#include "services/desk/panel.hpp"
-#include "services/desk/surface.hpp"
 
 namespace handcast::desk {
 

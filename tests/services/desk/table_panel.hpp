@@ -13,7 +13,7 @@
 #include "config/sections/cascade.hpp"
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
-#include "services/desk/panel.hpp"
+#include "services/desk/base/panel.hpp"
 
 namespace handcast::test {
 

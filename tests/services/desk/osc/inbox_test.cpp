@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/services/desk/osc/packets.hpp"
+#include "tests/services/desk/recorded_cues.hpp"
 #include "tests/services/desk/table_panel.hpp"
 
 namespace handcast::desk::osc {
@@ -29,21 +30,6 @@ std::uint64_t tag_of(std::int64_t wall_ns) {
          static_cast<std::uint64_t>((wall_ns % kSecond_ns << 32) / kSecond_ns);
 }
 
-class Cues final : public CueDeck {
- public:
-  void go() override { calls.push_back("go"); }
-  void back() override { calls.push_back("back"); }
-  void hold() override { calls.push_back("hold"); }
-  Result<void> jump(std::string_view cue) override {
-    calls.push_back("jump " + std::string(cue));
-    return {};
-  }
-  void key(std::string_view key) override { calls.push_back("key " + std::string(key)); }
-  std::shared_ptr<const CuePlace> place() const override { return nullptr; }
-
-  std::vector<std::string> calls;
-};
-
 class OscInbox : public testing::Test {
  protected:
   Instant at(std::int64_t after_ns) const { return {kSecond_ns + after_ns, kWall_ns + after_ns}; }
@@ -62,7 +48,7 @@ class OscInbox : public testing::Test {
   }
 
   test::TablePanel panel;
-  Cues cues;
+  test::RecordedCues cues;
   std::vector<std::string> said;
   Addresses addresses{panel.controls()};
   Complaints complaints{"osc", [this](const std::string& line) { said.push_back(line); }};

@@ -13,7 +13,7 @@ using JointPlaces = std::span<const glm::vec3, msg::kJoints>;
 
 /// How a hand is held, independent of its size: L is the distance from the wrist to the middle
 /// knuckle, S is smoothstep, which is 0 up to its first and 1 from its second number on.
-struct HandShape {
+struct HandPosture {
   float pinch = 0;  ///< 1 - S(0.2, 0.65) of the distance of the tips of thumb and index finger by L
   /// S(1.05, 1.5) of the distance of the middle joints (PIP) of index and little finger by that of
   /// their knuckles. Fingers that bend count as closed.
@@ -25,7 +25,7 @@ struct HandShape {
 };
 
 /// The shape of a hand.
-HandShape shape_of(JointPlaces joints);
+HandPosture posture_of(JointPlaces joints);
 /// The axes of a palm as columns: x to the right, y out of the back, z to the arm.
 glm::mat3 palm_axes(JointPlaces joints, msg::Side side);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "renderer/hand/hand_shape.hpp"
+#include "renderer/hand/hand_posture.hpp"
 
 #include <numeric>
 
@@ -36,17 +36,17 @@ float pinch_of(JointPlaces joints) {
 
 }  // namespace
 
-HandShape shape_of(JointPlaces joints) {
-  HandShape shape{.pinch = pinch_of(joints), .spread = spread_of(joints)};
+HandPosture posture_of(JointPlaces joints) {
+  HandPosture posture{.pinch = pinch_of(joints), .spread = spread_of(joints)};
   for (std::size_t finger = 0; finger < kKnuckles.size(); ++finger) {
     const int knuckle = kKnuckles[finger];
-    shape.reach[finger] =
+    posture.reach[finger] =
         ratio(glm::distance(joints[kWristJoint], joints[knuckle + kFromKnuckleToTip]),
               way_m(joints, knuckle));
   }
-  const float reach = 0.25f * std::accumulate(shape.reach.begin(), shape.reach.end(), 0.f);
-  shape.curl = 1 - glm::smoothstep(0.45f, 0.95f, reach);
-  return shape;
+  const float reach = 0.25f * std::accumulate(posture.reach.begin(), posture.reach.end(), 0.f);
+  posture.curl = 1 - glm::smoothstep(0.45f, 0.95f, reach);
+  return posture;
 }
 
 glm::mat3 palm_axes(JointPlaces joints, msg::Side side) {
