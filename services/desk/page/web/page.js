@@ -61,6 +61,9 @@ class Page {
     this.hands = new Hands();
     this.picture = new Picture();
     this.changes(settings.mayChange, may >= 2);
+    this.events = null;
+    // A browser has six connections to the desk for all of its tabs.
+    document.addEventListener('visibilitychange', () => (document.hidden ? this.events?.close() : this.listen()));
     this.listen();
   }
 
@@ -81,10 +84,12 @@ class Page {
   }
 
   listen() {
-    const events = new EventSource('/api/events');
+    this.events?.close();
+    const events = this.events = new EventSource('/api/events');
     const on = (name, take) => events.addEventListener(name, (event) => take(JSON.parse(event.data)));
     events.addEventListener('open', () => link('on', `connected as ${this.role}`));
     events.addEventListener('error', () => {
+      if (events !== this.events) return;
       link('bad', 'the desk is away');
       if (events.readyState === EventSource.CLOSED) setTimeout(() => this.return(), kRetry_ms);
     });

@@ -160,7 +160,7 @@ def check_settings(tab):
     tab.wait(f"{row}", "the changed one")
     tab.js(f"{row}.querySelector('.reset').setAttribute('data-test', '1')")
     tab.click("[data-test]")
-    tab.wait("!document.querySelector('#groups .changed')", "a reset")
+    tab.wait("!document.querySelector('[data-test]').closest('.setting').classList.contains('changed')", "a reset")
     tab.click("#only-changed")
     tab.type("#search", "")
     tab.js("document.getElementById('search').dispatchEvent(new Event('input'))")
