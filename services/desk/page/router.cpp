@@ -119,6 +119,12 @@ std::filesystem::path share_folder() {
   return std::filesystem::read_symlink("/proc/self/exe", gone).parent_path() / "../share/handcast";
 }
 
+/// Whether a shader is one that is laid over others, or leads from one to another.
+bool is_no_look(const std::string& text) {
+  return text.find(R"("CATEGORIES": ["Filter")") != std::string::npos ||
+         text.find(R"("CATEGORIES": ["Transition")") != std::string::npos;
+}
+
 /// The names of the looks, sorted, as `handcast content` lists them.
 std::vector<std::string> look_names() {
   const char* assets = std::getenv("HANDCAST_ASSETS");
@@ -126,8 +132,11 @@ std::vector<std::string> look_names() {
       (assets && *assets ? std::filesystem::path(assets) : share_folder()) / "looks";
   std::vector<std::string> names;
   std::error_code absent;
-  for (const auto& file : std::filesystem::directory_iterator(folder, absent))
-    if (file.path().extension() == ".fs") names.push_back(file.path().stem().string());
+  for (const auto& file : std::filesystem::directory_iterator(folder, absent)) {
+    const auto& path = file.path();
+    if (path.extension() == ".fs" && !is_no_look(read_input(path, kMostText).value_or("")))
+      names.push_back(path.stem().string());
+  }
   std::ranges::sort(names);
   return names;
 }
