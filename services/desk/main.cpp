@@ -54,7 +54,7 @@ static void run_desk(service::Context& context) {
   auto gestures = gestures_of(rig, context.calibration());
   context.stand_by();
   desk::RigPanel panel(must(config::LiveBoard::open(rig.name)));
-  const auto surfaces = open_surfaces(rig, context.calibration(), panel);
+  auto surfaces = open_surfaces(rig, context.calibration(), panel);
   auto poses = must(context.reader<msg::HandPoses>("pose.hands"));
   context.ready();
   for (std::int64_t due_ns = now_ns(); context.running();) {
@@ -68,6 +68,8 @@ static void run_desk(service::Context& context) {
     const auto& scene = gestures.at(now_ns());
     for (const auto& surface : surfaces) surface->turn(scene);
   }
+  // From the last one on: the others work the cues.
+  while (!surfaces.empty()) surfaces.pop_back();
 }
 
 int main(int argc, char** argv) {
