@@ -36,7 +36,7 @@ constexpr int kOscPort = 19000, kChanges = 120;
 constexpr std::string_view kEverywhere = "-10 -10, 5000 -10, 5000 5000, -10 5000";
 
 template <class T>
-T must(Result<T> result) {
+T needed(Result<T> result) {
   if (!result) give_up(result.error().what);
   return std::move(*result);
 }
@@ -51,7 +51,7 @@ bool is_dark(const msg::Projection& frame) {
 /// first frame that shows it, ms.
 template <class Change>
 std::vector<double> times_to_light_ms(const Change& change) {
-  auto frames = must(client::open_stream<msg::Projection>("twin", "projection.frames"));
+  auto frames = needed(client::open_stream<msg::Projection>("twin", "projection.frames"));
   std::vector<double> times_ms;
   for (int i = 0; i < kChanges; ++i) {
     const bool is_dark_then = i % 2 == 0;
@@ -72,7 +72,7 @@ std::vector<double> times_to_light_ms(const Change& change) {
 void change_by_board(config::LiveBoard& board, bool dark) {
   const std::vector<std::string> change{dark ? fmt::format("light.keep_out=\"{}\"", kEverywhere)
                                              : "light.keep_out"};
-  must(board.set(change, "bench"));
+  needed(board.set(change, "bench"));
 }
 
 /// A padded OSC string.
@@ -130,7 +130,7 @@ int run(const char* goals_file) {
   const TwinRig rig(
       folder, {"camera.rate_hz=120", "projector.rate_hz=120", "observer.enabled=false",
                "twin.motion=builtin:still", fmt::format("desk.osc.listen=127.0.0.1:{}", kOscPort)});
-  auto board = must(config::LiveBoard::open("twin"));
+  auto board = needed(config::LiveBoard::open("twin"));
   constexpr double kTwoRefreshes_ms = 2e3 / kRefresh_hz;
   note(goals, "by the ring", times_to_light_ms([&](bool dark) { change_by_board(board, dark); }),
        kTwoRefreshes_ms);

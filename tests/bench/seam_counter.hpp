@@ -34,6 +34,9 @@ class SeamCounter final : public renderer::Painter {
   }
   renderer::FillCounts fill(renderer::View<const std::uint8_t> mask, const config::Fill& settings,
                             renderer::Rect region) override;
+  void darken(std::span<const renderer::Rect> areas, renderer::Rect region) override {
+    painter_->darken(areas, region);
+  }
   renderer::View<const std::uint32_t> colour() override { return painter_->colour(); }
   Shown shown(int step) override { return painter_->shown(step); }
 

@@ -14,7 +14,8 @@ TEST(Reference, HasARowForEverySetting) {
   Rig rig;
   for (const auto& setting : every_setting(rig)) {
     if (!name_at_first(setting.path).empty()) continue;
-    EXPECT_THAT(page, HasSubstr("| `" + std::string(setting.name()) + "` | `" +
+    EXPECT_THAT(page, HasSubstr("| `" + std::string(setting.name()) +
+                                (setting.effect == Effect::live ? "` (live) | `" : "` | `") +
                                 print_value(setting) + "` |"))
         << setting.path;
   }

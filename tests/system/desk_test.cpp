@@ -32,8 +32,7 @@ class RigWithDesk : public SystemTest {
     for (int seen = 0; seen < 5; ++seen) {
       const auto frame = frames->latest(Deadline::in(5s));
       if (!frame) return false;
-      const std::size_t count =
-          std::size_t{(*frame)->region_width_px} * (*frame)->region_height_px;
+      const std::size_t count = std::size_t{(*frame)->region_width_px} * (*frame)->region_height_px;
       dark += std::all_of((*frame)->pixels(), (*frame)->pixels() + count,
                           [](auto pixel) { return (pixel & 0xffffff) == 0; });
     }

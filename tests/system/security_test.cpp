@@ -12,8 +12,8 @@
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
-#include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
+#include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "tests/system/running_rig.hpp"
 

@@ -21,6 +21,7 @@
 #include "ipc/control/choose_rig.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/daemon/stop_signal.hpp"
+#include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "services/recording/about.hpp"
 #include "services/tools/record/npy_folder.hpp"
@@ -248,7 +249,7 @@ Result<void> record(const Options& options) {
   // Projections have what was shown.
   std::erase_if(*there, [](const std::string& stream) {
     return stream == msg::kTestPictures || stream.starts_with("content.") ||
-           stream.starts_with("guest.");
+           stream.starts_with("guest.") || stream == msg::kLiveSettings;
   });
   const auto streams = choose(options.rings, *there);
   if (!streams) return tl::make_unexpected(streams.error());
