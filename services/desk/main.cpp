@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "config/settings/settings.hpp"
 #include "ipc/base/home.hpp"
 #include "ipc/base/log.hpp"
 #include "renderer/hand/hand_mesh.hpp"
@@ -72,11 +74,21 @@ static void run_desk(service::Context& context) {
   while (!surfaces.empty()) surfaces.pop_back();
 }
 
+/// What makes the panel another one, and what the surfaces read.
+static std::vector<std::string> settings_read() {
+  std::vector<std::string> names{"desk", "hand"};
+  config::Rig rig;
+  for (const auto& section : config::list_settings(rig))
+    for (const auto& setting : section.settings)
+      if (setting.effect == config::Effect::live) names.push_back(setting.path);
+  return names;
+}
+
 int main(int argc, char** argv) {
   return service::run({.name = "desk",
                        .summary = "Serves what people work the rig with: a page, OSC, MIDI, cues.",
                        .paced_by = "60 Hz",
                        .subscribes = {"pose.hands"},
-                       .settings = {"desk", "projector", "light", "content", "hand", "cascade"}},
+                       .settings = settings_read()},
                       argc, argv, run_desk);
 }
