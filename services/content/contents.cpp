@@ -51,10 +51,10 @@ Contents::Contents(Hands hands, const config::Rig& filed, const calib::Calibrati
 }
 
 void Contents::start(const std::optional<msg::ContentState>& before) {
-  if (const auto live = take_change()) {
-    hands_.adjust(live->rig);
-    for (auto& worn : worn_) worn.adjust(live->rig.content, live->settings.header.frame_id);
-  }
+  const auto live = take_change();
+  if (live) hands_.adjust(live->rig);
+  for (auto& worn : worn_)
+    if (live) worn.adjust(live->rig.content);
   std::array<std::string, 2> first;
   for (std::size_t i = 0; i < worn_.size(); ++i) {
     first[i] = worn_[i].content_of_settings();
@@ -69,6 +69,7 @@ void Contents::start(const std::optional<msg::ContentState>& before) {
     worn_[i].start(first[i]);
     if (first[i] != worn_[i].content_of_settings()) worn_[i].obey({"cut", 0});
     worn_[i].trust();
+    if (live) worn_[i].took(live->settings.header.frame_id);
   }
 }
 
@@ -96,12 +97,13 @@ void Contents::obey(const service::LiveRig& live) {
   std::vector<HandContent*> begun;
   for (auto& worn : worn_) {
     const bool is_named = settings.change.view().find(worn.setting()) != std::string_view::npos;
-    if (worn.adjust(live.rig.content, settings.header.frame_id) || is_named) begun.push_back(&worn);
+    if (worn.adjust(live.rig.content) || is_named) begun.push_back(&worn);
   }
   for (auto* worn : begun) worn->announce(worn->content_of_settings());
   if (!begun.empty()) publish_state();
   for (auto* worn : begun)
     worn->obey({std::string(settings.transition.view()), settings.transition_s});
+  for (auto& worn : worn_) worn.took(settings.header.frame_id);
 }
 
 void Contents::take_poses() {

@@ -40,9 +40,10 @@ class HandContent {
   /// Changes to the content of the settings. What cannot be opened becomes the fault in state(),
   /// and the content of before goes on.
   void obey(const config::Transition& transition);
-  /// Takes other settings, whose content obey() shows. Returns whether it is another one. `change`:
-  /// msg::LiveSettings::header.frame_id.
-  bool adjust(const config::Content& settings, std::uint64_t change);
+  /// Takes other settings, whose content obey() shows. Returns whether it is another one.
+  bool adjust(const config::Content& settings);
+  /// Notes in state() that a change (msg::LiveSettings::header.frame_id) is done.
+  void took(std::uint64_t change) { state_.command = change; }
   /// Draws the picture for a time, CLOCK_MONOTONIC, and publishes it if it is new. `camera`: see
   /// Moment.
   void draw(const HandState& hand, const HandState& other, std::int64_t time_ns,

@@ -51,10 +51,9 @@ void HandContent::start(const std::string& content) {
   note_fault(shown.error());
 }
 
-bool HandContent::adjust(const config::Content& settings, std::uint64_t change) {
+bool HandContent::adjust(const config::Content& settings) {
   const auto before = content_of_settings();
   settings_ = settings;
-  state_.command = change;
   return content_of_settings() != before;
 }
 

@@ -70,7 +70,7 @@ std::vector<double> times_to_light_ms(const Change& change) {
 }
 
 void change_by_board(config::LiveBoard& board, bool dark) {
-  const std::vector<std::string> change{dark ? fmt::format("light.keep_out=\"{}\"", kEverywhere)
+  const std::vector<std::string> change{dark ? fmt::format("light.keep_out={}", kEverywhere)
                                              : "light.keep_out"};
   needed(board.set(change, "bench"));
 }

@@ -49,7 +49,7 @@ class RigWithDesk : public SystemTest {
   }
 };
 
-constexpr const char* kEverywhere = "light.keep_out=\"-10 -10, 5000 -10, 5000 5000, -10 5000\"";
+constexpr const char* kEverywhere = "light.keep_out=-10 -10, 5000 -10, 5000 5000, -10 5000";
 
 TEST_F(RigWithDesk, ChangesAreSeenAndOutliveTheProcessesThatReadThem) {
   const auto rig = up({"--set", "twin.motion=builtin:still"});

@@ -78,8 +78,8 @@ TEST_F(Reload, RestartsTheServicesThatReadWhatChangedAndTheLightGoesOn) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.log;
   EXPECT_THAT(
       outcome.output,
-      AllOf(StartsWith("reloaded: camera, landmarks restarted; pose, projector, content, observer "
-                       "untouched;"
+      AllOf(StartsWith("reloaded: camera, landmarks restarted; pose, projector, content, desk, "
+                       "observer untouched;"
                        " paused for: camera "),
             HasSubstr(", landmarks ")));
   EXPECT_EQ(service("camera")["restarts"], 0) << "it did not die";
@@ -177,7 +177,7 @@ TEST_F(Reload, TheSupervisorsOwnSettingsRestartNobody) {
   const auto before = processes();
   write_rig_with(kCalm, "stop_s = 2\nhistory_s = 5\n" + std::string(kNoObserver));
   EXPECT_EQ(handcast({"reload"}).output,
-            "reloaded: camera, pose, landmarks, projector, content untouched\n");
+            "reloaded: camera, pose, landmarks, projector, content, desk untouched\n");
   EXPECT_TRUE(changed_since(before).empty());
 }
 
