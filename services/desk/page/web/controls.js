@@ -65,6 +65,12 @@ export class Settings {
     this.isSending = false;
   }
 
+  /** Waits until the desk has told of what was sent. */
+  async settled() {
+    while (this.isSending) await new Promise((resolve) => setTimeout(resolve, kSendEvery_ms));
+    await new Promise((resolve) => setTimeout(resolve, 4 * kSendEvery_ms));
+  }
+
   /** Shows what the desk last told. */
   show(paths) {
     for (const path of paths)
@@ -271,6 +277,7 @@ export function showCompare(settings) {
     $('ab').setAttribute('aria-label', `Compare: state ${now} is shown; switch to ${other}`);
   };
   $('ab').addEventListener('click', async () => {
+    await settings.settled();
     states[now] = new Map(settings.toml);
     now = now === 'A' ? 'B' : 'A';
     label();

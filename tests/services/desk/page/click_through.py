@@ -81,6 +81,8 @@ class Tab:
         for domain in ("Page", "Runtime", "Log", "Accessibility"):
             self.do(f"{domain}.enable")
         self.do("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
+        # Keys go to what has the focus, whichever window the browser thinks is in front.
+        self.do("Emulation.setFocusEmulationEnabled", enabled=True)
         self.do("Page.navigate", url=url)
         self.wait("document.readyState === 'complete' && document.getElementById('main')", "the page")
 
@@ -102,9 +104,15 @@ class Tab:
             time.sleep(0.05)
 
     def click(self, selector):
-        """As a person does: at the middle of what is seen."""
-        place = self.js(f"""(() => {{ const e = document.querySelector({json.dumps(selector)});
-            e.scrollIntoView({{block: 'center'}}); const b = e.getBoundingClientRect();
+        """As a person does: at the middle of what is seen, once it stands still."""
+        place = self.js(f"""(async () => {{ const e = document.querySelector({json.dumps(selector)});
+            const frame = () => new Promise((resolve) => setTimeout(resolve, 30));
+            e.scrollIntoView({{block: 'center', behavior: 'instant'}});
+            let b = e.getBoundingClientRect();
+            for (let last = null; !last || last.x !== b.x || last.y !== b.y; b = e.getBoundingClientRect()) {{
+              last = b; await frame();
+              if (e.getBoundingClientRect().y === b.y) break;
+            }}
             const x = b.x + b.width / 2, y = b.y + b.height / 2, top = document.elementFromPoint(x, y);
             return {{x, y, seen: top === e || e.contains(top) || (top && top.contains(e))}}; }})()""")
         assert place["seen"], f"{selector} is covered"
@@ -186,6 +194,7 @@ def check_light(tab):
     tab.key("ArrowLeft", "ArrowLeft", 37)
     tab.wait("document.getElementById('master-text').textContent === '99 %'", "master by key")
     tab.key("ArrowRight", "ArrowRight", 39)
+    tab.wait("document.getElementById('master-text').textContent === '100 %'", "master back by key")
     tab.click("#ab")
     tab.wait("document.getElementById('ab').getAttribute('aria-label').includes('state B is shown')", "compare")
     tab.click("#ab")
