@@ -87,13 +87,20 @@ function stepOf(control) {
   return control.min === null || control.max === null ? 'any' : 10 ** Math.floor(Math.log10(span / 500));
 }
 
-/** A widget that is not moved by others while a person moves it. */
+/** A widget that is not moved by others while a person moves it; a moment later it shows what they have set. */
 function guarded(show) {
-  let touched = 0;
+  let touched = -Infinity, newest, timer = 0;
+  const settle = () => {
+    const wait_ms = touched + kOwnHand_ms - performance.now();
+    timer = wait_ms > 0 ? setTimeout(settle, wait_ms) : 0;
+    if (!timer) show(newest);
+  };
   return {
     touch() { touched = performance.now(); },
     show(toml, isForced) {
-      if (isForced || performance.now() - touched > kOwnHand_ms) show(toml);
+      newest = toml;
+      if (isForced) show(toml);
+      else if (!timer) settle();
     },
   };
 }

@@ -196,8 +196,9 @@ def check_light(tab):
     tab.key("ArrowRight", "ArrowRight", 39)
     tab.wait("document.getElementById('master-text').textContent === '100 %'", "master back by key")
     tab.click("#ab")
-    tab.wait("document.getElementById('ab').getAttribute('aria-label').includes('state B is shown')", "compare")
+    tab.wait("document.getElementById('toast').textContent.startsWith('State B begins')", "compare")
     tab.click("#ab")
+    tab.wait("document.getElementById('toast').textContent.startsWith('State A')", "the other state")
 
 
 def check_others(tab):
