@@ -23,8 +23,8 @@ constexpr std::string_view kHead =
     "up` would refuse; it opens no device, output or port.\n"
     "\n"
     "Those marked (live) change while the rig is up, with `handcast set path=value`; the others "
-    "when "
-    "their services are started, with\n`handcast reload`.\n";
+    "when their services are started, with\n"
+    "`handcast reload`.\n";
 
 /// Escapes bars, which would end the cell of a table.
 std::string cell(std::string_view text) {

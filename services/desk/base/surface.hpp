@@ -12,14 +12,15 @@ namespace handcast::desk {
 
 /// What one hand does.
 struct Gesture {
-  bool is_there = false;
-  float pinch = 0;      ///< thumb and index finger: 0 apart, 1 touching
-  float spread = 0;     ///< fingers: 0 together, 1 apart
-  float fist = 0;       ///< 0 open, 1 closed
-  float palm_up = 0;    ///< cosine between the palm's normal and up, -1..1
-  float speed_m_s = 0;  ///< of the palm
-  bool is_pointing = false, touches_other = false;
-  double absent_s = 0;  ///< how long it has not been there
+  bool is_there = false;       ///< the tracker sees it, for longer than a moment
+  float pinch = 0;             ///< thumb and index finger: 0 apart, 1 touching
+  float spread = 0;            ///< fingers: 0 together, 1 apart
+  float fist = 0;              ///< 0 open, 1 closed
+  float palm_up = 0;           ///< cosine between the palm's normal and up, -1..1
+  float speed_m_s = 0;         ///< of the palm
+  bool is_pointing = false;    ///< with the index finger alone
+  bool touches_other = false;  ///< the other hand
+  double absent_s = 0;         ///< how long it has not been there
 };
 
 /// The hands as the desk sees them at one time.

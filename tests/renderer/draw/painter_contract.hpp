@@ -233,6 +233,21 @@ TEST_P(PainterContract, DrawingClearsItsRegionAndNothingElse) {
   expect_consistent();
 }
 
+TEST_P(PainterContract, DarkAreasHaveNoLightAndOthersKeepTheirs) {
+  Shape shape;
+  shape.rectangle({0, 0}, {199, 149});
+  draw(*painter_, shape, kWhole);
+  const std::array<Rect, 2> areas{Rect{50, 40, 120, 100}, Rect{-10, 140, 20, 5000}};
+  painter_->darken(areas, kWhole);
+  const auto colour = painter_->colour();
+  for (int y = 0; y < kHeight - 1; ++y)
+    for (int x = 0; x < kWidth - 1; ++x) {
+      const bool is_dark = (x >= 50 && x < 120 && y >= 40 && y < 100) || (x < 20 && y >= 140);
+      ASSERT_EQ(colour.at(x, y) == 0, is_dark) << x << ' ' << y;
+    }
+  painter_->darken(areas, {0, 0, 0, 0});
+}
+
 TEST_P(PainterContract, ARegionBeyondTheImageIsClipped) {
   Shape shape;
   shape.rectangle({-500, -400}, {900, 800});
