@@ -100,7 +100,7 @@ class OscSender {
   UniqueFd socket_;
 };
 
-/// The share of one core that a process took, from its times in /proc.
+/// The processor time that a process has used, s.
 double busy_seconds(pid_t pid) {
   std::ifstream stat(fmt::format("/proc/{}/stat", pid));
   std::string text;
