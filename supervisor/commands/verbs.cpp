@@ -66,6 +66,8 @@ constexpr std::array kVerbs{
               Group::set_up},
     VerbEntry{"gallery", "Shows looks on the moving hands of the digital twin, as a page.", nullptr,
               Group::look},
+    VerbEntry{"study", "Runs the studies of the paper with people, and analyses them.", nullptr,
+              Group::score},
     VerbEntry{"simulate", "Scores a rig in virtual time against its digital twin.", nullptr,
               Group::score},
     VerbEntry{"sweep", "Scores a rig with all combinations of some settings, on all cores.",

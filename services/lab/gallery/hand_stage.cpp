@@ -2,18 +2,14 @@
 #include "services/lab/gallery/hand_stage.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "renderer/draw/cpu/cpu_painter.hpp"
+#include "services/lab/gallery/lit_skin.hpp"
 
 namespace handcast::gallery {
 namespace {
 
 using renderer::Rect;
-
-constexpr std::array<float, 3> kSkin{0.88f, 0.72f, 0.62f};  ///< albedo
-constexpr float kRoomLight = 0.13f;                         ///< relative to the projector's white
-constexpr std::uint32_t kNight = 0xff0a0807;                ///< behind the hands
 
 Rect bounds_of(const std::vector<glm::vec2>& points) {
   glm::vec2 low(1e9f), high(-1e9f);
@@ -23,19 +19,6 @@ Rect bounds_of(const std::vector<glm::vec2>& points) {
   }
   return {static_cast<int>(low.x) - 1, static_cast<int>(low.y) - 1, static_cast<int>(high.x) + 2,
           static_cast<int>(high.y) + 2};
-}
-
-/// Skin under the dim light of a room and the light of the projector. `lambert`: 0..255.
-std::uint32_t lit(std::uint32_t lambert, std::uint32_t light) {
-  std::uint32_t pixel = 0xff000000u;
-  for (int channel = 0; channel < 3; ++channel) {
-    const float shade = static_cast<float>(lambert) / 255,
-                level = static_cast<float>(light >> (8 * channel) & 0xff);
-    const float value = kSkin[static_cast<std::size_t>(channel)] *
-                        (kRoomLight * 255 * shade + level * std::sqrt(shade));
-    pixel |= static_cast<std::uint32_t>(std::clamp(value, 0.f, 255.f)) << (8 * channel);
-  }
-  return pixel;
 }
 
 }  // namespace
@@ -76,7 +59,7 @@ void HandStage::compose(renderer::View<const std::uint32_t> shade) {
     for (int x = 0; x < picture_.width(); ++x) {
       const bool is_inside = x >= region_.x0 && x < region_.x1 && y >= region_.y0 && y < region_.y1;
       const bool is_skin = is_inside && (shade.at(x, y) >> 24) != 0;
-      picture_.at(x, y) = is_skin ? lit(shade.at(x, y) & 0xff, light_.at(x, y)) : kNight;
+      picture_.at(x, y) = is_skin ? lit_skin(shade.at(x, y) & 0xff, light_.at(x, y)) : kNight;
     }
 }
 

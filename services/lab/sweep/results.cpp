@@ -103,7 +103,7 @@ Result<void> Results::go_on(const Heading& heading) {
 Result<void> Results::append(const Row& row) {
   const std::lock_guard lock(mutex_);
   if (state_) state_ = check_in_place();
-  if (state_) state_ = write(print_row(row));
+  if (state_) state_ = write(print_csv(row));
   return state_;
 }
 

@@ -13,18 +13,6 @@
 namespace handcast::sweep {
 namespace {
 
-std::string print_cell(std::string cell) {
-  std::ranges::replace(cell, '\n', ' ');
-  std::ranges::replace(cell, '\r', ' ');
-  if (cell.find_first_of(",\"") == cell.npos) return cell;
-  std::string quoted = "\"";
-  for (const char c : cell) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
-}
-
 Result<void> check_row(const Row& row, const Heading& heading, const std::filesystem::path& file,
                        std::size_t line) {
   std::size_t index = 0;
@@ -38,7 +26,7 @@ Result<void> check_row(const Row& row, const Heading& heading, const std::filesy
 
 }  // namespace
 
-std::string Heading::print() const { return stamp + "\n" + print_row(columns); }
+std::string Heading::print() const { return stamp + "\n" + print_csv(columns); }
 
 // 0 also above kMostRuns: no file of results holds more, and the number decides how much memory
 // is taken.
@@ -48,33 +36,6 @@ std::size_t Heading::runs() const {
   std::size_t count = 0;
   if (at != stamp.npos) std::from_chars(stamp.data() + at + 6, stamp.data() + stamp.size(), count);
   return count <= kMostRuns ? count : 0;
-}
-
-std::string print_row(const Row& row) {
-  std::string line;
-  for (const auto& cell : row) {
-    if (&cell != &row.front()) line += ',';
-    line += print_cell(cell);
-  }
-  line += '\n';
-  return line;
-}
-
-Row parse_row(std::string_view line) {
-  Row row(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const bool doubled = quoted && line.substr(i, 2) == "\"\"";
-    if (line[i] == '"' && !doubled) {
-      quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      row.emplace_back();
-    } else {
-      row.back() += line[i];
-      if (doubled) ++i;
-    }
-  }
-  return row;
 }
 
 bool Table::is_cut_off_in(const Heading& begun) const {
@@ -95,9 +56,9 @@ Result<Table> read_table(const std::filesystem::path& file) {
     if (line == 1) {
       table.heading.stamp = content;
     } else if (line == 2) {
-      table.heading.columns = parse_row(content);
+      table.heading.columns = parse_csv(content);
     } else {
-      table.rows.push_back(parse_row(content));
+      table.rows.push_back(parse_csv(content));
       if (auto good = check_row(table.rows.back(), table.heading, file, line); !good)
         return tl::make_unexpected(good.error());
     }
@@ -113,7 +74,7 @@ Result<void> write_table(const std::filesystem::path& file, const Table& table) 
   std::map<std::size_t, const Row*> newest;
   for (const auto& row : table.rows) newest[Table::index_of(row)] = &row;
   std::string text = table.heading.print();
-  for (const auto& [index, row] : newest) text += print_row(*row);
+  for (const auto& [index, row] : newest) text += print_csv(*row);
   return write_whole(file, text);
 }
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ipc/base/csv.hpp"
 #include "ipc/base/result.hpp"
 
 namespace handcast::sweep {
@@ -15,7 +16,7 @@ inline constexpr std::string_view kStampStart = "# handcast sweep ";
 
 /// The cells of one line of the CSV: index, variant, axes (empty if not in the run's grid), metrics
 /// (empty if not measured), error.
-using Row = std::vector<std::string>;
+using Row = CsvRow;
 
 /// The first two lines of a file of results. Files with equal headings can be merged.
 ///
@@ -32,12 +33,6 @@ struct Heading {
   /// Number of runs of the whole plan.
   std::size_t runs() const;
 };
-
-/// Prints a line with its line end. Cells with a comma or quote are quoted; line breaks become
-/// spaces.
-std::string print_row(const Row& row);
-/// Parses a line without its line end.
-Row parse_row(std::string_view line);
 
 /// The content of a file of results. An incomplete last line is not among the rows.
 struct Table {

@@ -56,8 +56,8 @@ TEST_F(ResultsTest, AFileBeginsWithWhatItIsOf) {
 
 TEST_F(ResultsTest, ARowReadsBackAsItWasWritten) {
   const Row row{"3", "a, b", "say \"no\"", "", "1.5"};
-  const auto line = print_row(row);
-  EXPECT_EQ(parse_row(std::string_view(line).substr(0, line.size() - 1)), row);
+  const auto line = print_csv(row);
+  EXPECT_EQ(parse_csv(std::string_view(line).substr(0, line.size() - 1)), row);
 }
 
 TEST_F(ResultsTest, LinesAreInTheOrderOfTheRunsOnceItIsDone) {

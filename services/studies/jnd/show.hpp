@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ipc/base/result.hpp"
+#include "renderer/window/window.hpp"
+#include "services/studies/jnd/stimulus.hpp"
+
+namespace handcast::study {
+
+/// A frame of an interval, as it was shown.
+struct ShownFrame {
+  /// Times of the motion: of the hand, and of its light.
+  /// @{
+  double hand_s = 0, light_s = 0;
+  /// @}
+  std::int64_t shown_ns = 0;  ///< CLOCK_MONOTONIC
+  double error_ms = 0;        ///< how much later it was shown than it was drawn for
+};
+
+/// An interval as it was shown.
+struct ShownInterval {
+  std::vector<ShownFrame> frames;
+  int missed = 0;  ///< frames that were not shown in the refresh that they were drawn for
+  double worst_error_ms = 0;  ///< the largest difference of the delay shown from the delay asked
+};
+
+/// Keys that end what waits for them.
+inline constexpr std::string_view kEscape = "Escape", kGoOn = " ";
+
+/// The screen in front of the subject. The main thread.
+class StudyScreen {
+ public:
+  /// Opens the window. `rate_hz`: how often pictures are shown if the monitor does not say. Errors:
+  /// those of renderer::Window::open().
+  static Result<std::unique_ptr<StudyScreen>> open(renderer::WindowSettings settings,
+                                                   double rate_hz);
+
+  /// Shows lines of text, the first one larger, until one of the keys is pressed. Returns the key.
+  /// Errors: those of Window::show(); disconnected (the window was closed).
+  Result<std::string> ask(const std::vector<std::string>& lines,
+                          const std::vector<std::string_view>& keys);
+  /// Shows the same for a time.
+  Result<void> tell(const std::vector<std::string>& lines, double seconds);
+  /// Shows an interval of the motion. Every frame is drawn for the refresh that will show it.
+  Result<ShownInterval> play(Stimulus& stimulus, double from_s, double seconds, double delay_ms,
+                             Condition condition);
+  /// Lets the subject paint on a picture with the mouse, until the key kGoOn. Returns where, 255,
+  /// else 0.
+  Result<renderer::Image<std::uint8_t>> paint(renderer::View<const std::uint32_t> picture,
+                                              const std::string& sentence);
+  /// Time from one refresh to the next.
+  double period_ms() const;
+
+ private:
+  StudyScreen(std::unique_ptr<renderer::Window> window, int width_px, int height_px, double rate_hz)
+      : window_(std::move(window)), width_px_(width_px), height_px_(height_px), rate_hz_(rate_hz) {}
+  Result<renderer::Shown> show(renderer::View<const std::uint32_t> picture,
+                               const renderer::Rect& region);
+  renderer::Texture page(const std::vector<std::string>& lines) const;
+
+  std::unique_ptr<renderer::Window> window_;
+  int width_px_, height_px_;
+  double rate_hz_;
+  std::int64_t last_ns_ = 0;  ///< when the last picture was shown
+};
+
+}  // namespace handcast::study

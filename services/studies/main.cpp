@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// handcast study: what researchers do with light on hands.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
+#include "ipc/base/quote.hpp"
+#include "services/studies/jnd/run.hpp"
+
+namespace handcast::study {
+namespace {
+
+struct Study {
+  std::string_view name, sentence;
+  int (*run)(int argc, char** argv);
+};
+
+constexpr std::array kStudies{
+    Study{"jnd", "Which delay of light people notice, on a screen.", run_jnd},
+};
+
+int explain(std::FILE* out) {
+  fmt::print(out, "usage: handcast study STUDY ...\n\nThe studies:\n");
+  for (const auto& study : kStudies) fmt::print(out, "  {:<12} {}\n", study.name, study.sentence);
+  fmt::print(out, "\nhandcast study STUDY --help explains one.\n");
+  return out == stdout ? kExitDone : kExitUsage;
+}
+
+int run(int argc, char** argv) {
+  const std::string_view name = argc > 1 ? argv[1] : "";
+  if (name == "-h" || name == "--help") return explain(stdout);
+  const auto study = std::ranges::find(kStudies, name, &Study::name);
+  if (study != kStudies.end()) return study->run(argc - 1, argv + 1);
+  if (name.empty()) return explain(stderr);
+  fmt::print(stderr, "handcast study: there is no study {}; `handcast study --help` lists them\n",
+             printable(quote(name)));
+  return kExitUsage;
+}
+
+}  // namespace
+}  // namespace handcast::study
+
+int main(int argc, char** argv) {
+  return handcast::run_program("handcast study", argc, argv, handcast::study::run);
+}
