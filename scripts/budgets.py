@@ -18,8 +18,8 @@ DOCUMENT_COLUMNS = 120
 README_LINES = 120
 DECISION_LINES = 6
 
-# What runs while there is light: neither its tools and laboratory nor the drivers, of which a rig uses one or two.
-NOT_IN_THE_SHOW = re.compile(r"services/(tools|lab)/|calib/solve/|supervisor/look/|"
+# What runs while there is light: neither its tools, laboratory and studies nor the drivers, of which a rig uses one or two.
+NOT_IN_THE_SHOW = re.compile(r"services/(tools|lab|studies)/|calib/solve/|supervisor/look/|"
                              r"services/(camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
 GENERATED = ("config/REFERENCE.md", "docs/lab/")
 NO_DOCUMENTS = re.compile(r"(build[^/]*|out|\.git|tests)/")

@@ -10,6 +10,7 @@
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/quote.hpp"
+#include "services/studies/character/course.hpp"
 #include "services/studies/jnd/run.hpp"
 
 namespace handcast::study {
@@ -22,6 +23,8 @@ struct Study {
 
 constexpr std::array kStudies{
     Study{"jnd", "Which delay of light people notice, on a screen.", run_jnd},
+    Study{"character", "How fast people read characters on their hand and act on them.",
+          run_character},
 };
 
 int explain(std::FILE* out) {

@@ -39,8 +39,12 @@ METRICS = (
     Metric("Fold-overs", "", ("foldovers",), 1, 0, min,
            "Triangles of the drawn hand that the correction has turned over. There should be none."),
     Metric("Equivalent latency", "ms", ("equivalent_latency_ms",), 1, 2, nearest_to_zero,
-           "The delay that explains the error best. It means little for a hand that hardly moves. People notice 3.1 ms without and "
-           "6.6 ms with the fill."),
+           "The delay that explains the error best. It means little for a hand that hardly moves."),
+    Metric("Noticed delay", "ms", ("jnd_ms",), 1, 2, max,
+           "The delay that a viewer would notice in 75 % of the comparisons with perfect light, by a model: edges of the light inside the "
+           "hand tell more than its picture. Ten people noticed 3.1 ms without and 6.6 ms with the fill."),
+    Metric("Latency, in noticed delays", "", ("late_jnds",), 1, 2, min,
+           "The equivalent latency relative to the noticed delay: below 1, most viewers do not see that the light is late."),
     Metric("Residual", "px RMS", ("residual_px",), 1, 2, min, "The error that no delay explains."),
     Metric("Frame, p50", "µs", ("frame_us", "p50"), 1, 0, min,
            "Median software time of one projector frame on the machine that ran the simulation."),

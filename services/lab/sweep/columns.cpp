@@ -29,9 +29,10 @@ std::vector<Metric> make_metrics() {
   add("landmark_mm_p95", "/landmark_mm/p95");
   add("lit_mm_mean", "/lit_mm/mean");
   add("lit_mm_p95", "/lit_mm/p95");
-  for (const char* plain : {"missing", "off_10mm", "coverage", "spill", "iou", "seam_px",
-                            "jitter_px", "landmark_jitter_px", "foldovers", "equivalent_latency_ms",
-                            "residual_px", "software_ms", "motion_to_photon_ms"})
+  for (const char* plain :
+       {"missing", "off_10mm", "coverage", "spill", "iou", "seam_px", "jitter_px",
+        "landmark_jitter_px", "foldovers", "equivalent_latency_ms", "residual_px", "jnd_ms",
+        "late_jnds", "software_ms", "motion_to_photon_ms"})
     add(plain, fmt::format("/{}", plain));
   for (const char* of_fault : {"usual_mm", "worst_mm", "dark_ms", "recovery_ms"})
     add(fmt::format("fault_{}", of_fault), fmt::format("/fault/{}", of_fault));

@@ -154,8 +154,11 @@ class RigJudge final : public Judge {
         const bool lit = is_lit(x, y);
         ++score.hand_px;
         score.lit_px += lit;
-        if (x + 1 < bounds.x1) score.seam_px += is_of_hand(x + 1, y) && is_lit(x + 1, y) != lit;
-        if (y + 1 < bounds.y1) score.seam_px += is_of_hand(x, y + 1) && is_lit(x, y + 1) != lit;
+        for (const glm::ivec2 next : {glm::ivec2(x + 1, y), glm::ivec2(x, y + 1)}) {
+          const bool both = next.x < bounds.x1 && next.y < bounds.y1 && is_of_hand(next.x, next.y);
+          score.seam_px += both && is_lit(next.x, next.y) != lit;
+          score.outline_px += both ? 0 : 2;  // the left and the upper edges are as long
+        }
       }
   }
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "ipc/base/statistics.hpp"
+#include "services/lab/perception/viewer.hpp"
 
 namespace handcast::twin {
 namespace {
@@ -105,6 +106,8 @@ void Metrics::add(const FrameScore& score) {
         std::lower_bound(kSpeedSteps_m_s.begin(), kSpeedSteps_m_s.end(), hand.speed_m_s) -
         kSpeedSteps_m_s.begin();
     all_.add(hand);
+    speed_m_s_.add(static_cast<float>(hand.speed_m_s));
+    outline_px_ += hand.outline_px;
     by_speed_[static_cast<std::size_t>(speed)].add(hand);
     by_side_[static_cast<std::size_t>(hand.side)].add(hand);
   }
@@ -130,10 +133,25 @@ void Metrics::add_landmark(double error_px, double error_mm) {
   landmark_mm_.add(static_cast<float>(error_mm));
 }
 
+/// What people would notice, by the model of a viewer: edges are seen as far as the light ends
+/// inside the hand.
+void Metrics::write_perception(nlohmann::json& json) const {
+  std::vector<double> speeds_deg_s;
+  for (const float speed : speed_m_s_.kept())
+    speeds_deg_s.push_back(perception::degrees_per_s(speed));
+  const double edges = outline_px_ > 0 ? std::min(1.0, all_.seam_px / outline_px_) : 0;
+  const double jnd_ms = perception::jnd_ms(speeds_deg_s, {.edges = edges});
+  const bool is_seen = std::isfinite(jnd_ms) && all_.speed2_px_s2 > 0;
+  const double latency_ms = 1e3 * all_.lag_px_s / std::max(all_.speed2_px_s2, 1e-9);
+  json["jnd_ms"] = is_seen ? nlohmann::json(jnd_ms) : nlohmann::json();
+  json["late_jnds"] = is_seen ? nlohmann::json(std::abs(latency_ms) / jnd_ms) : nlohmann::json();
+}
+
 nlohmann::json Metrics::to_json() const {
   nlohmann::json json;
   all_.write(json);
   json["frames"] = frames_;
+  write_perception(json);
   json["jitter_px"] = or_null(jitter_px_);
   json["landmark_jitter_px"] = or_null(landmark_jitter_px_);
   json["foldovers"] = foldovers_;

@@ -40,6 +40,7 @@ class Metrics {
   ///      "interior_mm": {mean, p95, p99}, "interior_px": {...}, "lit_mm": {...},
   ///      "missing", "off_10mm", "coverage", "spill", "iou", "seam_px",
   ///      "equivalent_latency_ms", "residual_px",
+  ///      "jnd_ms": the delay that people notice, "late_jnds": the latency relative to it,
   ///      "jitter_px", "landmark_jitter_px", "foldovers",
   ///      "landmark_px": {mean, p95, p99}, "landmark_mm": {...},
   ///      "rungs": {rung: share of the hands of drawn frames},
@@ -58,6 +59,7 @@ class Metrics {
     bool empty() const { return count_ == 0; }
     double mean() const { return sum_ / static_cast<double>(count_); }
     double percentile(double share) const;
+    const std::vector<float>& kept() const { return kept_; }
 
    private:
     std::vector<float> kept_;
@@ -74,6 +76,7 @@ class Metrics {
     void write(nlohmann::json& json) const;
     nlohmann::json residual_px() const;
   };
+  void write_perception(nlohmann::json& json) const;
   static void write_spread(nlohmann::json& json, const Samples& samples, bool with_mean);
 
   Bin all_;
@@ -81,6 +84,8 @@ class Metrics {
   std::array<Bin, 2> by_side_;
   std::map<msg::Stage, Samples> stage_us_;
   Samples landmark_px_, landmark_mm_;
+  Samples speed_m_s_;  ///< of hands
+  double outline_px_ = 0;
   std::int64_t foldovers_ = 0, frames_ = 0;
   std::array<std::int64_t, msg::kRungs> rungs_{};  ///< hands of drawn frames
   std::optional<double> jitter_px_, landmark_jitter_px_;

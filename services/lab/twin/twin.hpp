@@ -124,6 +124,7 @@ struct FrameScore {
     int spill_px = 0;                ///< lit pixels beside hands and arms, nearest to this hand
     int union_px = 0;                ///< hand_px + spill_px: the denominator of the IoU
     double seam_px = 0;              ///< length of the edge of the light inside the true hand
+    double outline_px = 0;           ///< length of the outline of the true hand
     double lag_px_s = 0;             ///< sum of -error . velocity over the lit points
     double speed2_px_s2 = 0;         ///< sum of |velocity|^2; equivalent latency = lag / speed2
     double error2_px2 = 0;           ///< sum of |error|^2

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/quote.hpp"
-#include "services/studies/jnd/course.hpp"
+#include "services/studies/base/page.hpp"
 
 namespace handcast::study {
 namespace {
@@ -85,75 +85,6 @@ Result<void> add_file(const fs::path& file, JndFindings& findings,
   return {};
 }
 
-constexpr std::string_view kHead = R"(<!doctype html>
-<html lang="en"><meta charset="utf-8"><title>handcast: just noticeable delay</title>
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<style>
-:root { color-scheme: light dark; --ink: light-dark(#1c232b, #dfe3e8); --first: light-dark(#8b97a5, #7d8894); --second: light-dark(#1273c4, #58b0ff); }
-body { color: var(--ink); font: 16px/1.55 system-ui, sans-serif; margin: 2.5rem auto; max-width: 900px; padding: 0 1.2rem; }
-h1 { font-weight: 500; } h2 { font-size: 1.1rem; margin-top: 2.2rem; }
-svg { display: block; width: 100%; height: auto; } svg text { fill: var(--ink); font: 12px system-ui, sans-serif; }
-.bar0 { fill: var(--first); } .bar1 { fill: var(--second); } .axis { stroke: var(--ink); stroke-opacity: .18; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; } td, th { padding: .2rem .9rem .2rem 0; text-align: right; } td:first-child, th:first-child { text-align: left; }
-figure { margin: 0; } img { max-width: 100%; } small { opacity: .75; }
-</style>
-<h1>Just noticeable delay</h1>
-)";
-
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text)
-    html += c == '<' || c == '>' || c == '&' || c == '"' ||
-                    (static_cast<unsigned char>(c) < 0x20 && c != '\n')
-                ? fmt::format("&#{};", static_cast<int>(static_cast<unsigned char>(c)))
-                : std::string(1, c);
-  return html;
-}
-
-/// Bars of the conditions by subject, as the figure of the paper.
-std::string bars_of(const Comparison& comparison) {
-  constexpr double kWidth = 860, kHeight = 300, kLeft = 40, kBottom = 30, kTop = 30;
-  double most = 1;
-  for (const auto& values : comparison.values)
-    for (const double value : values) most = std::max(most, value);
-  const double per_ms = (kHeight - kBottom - kTop) / most, floor = kHeight - kBottom;
-  std::string svg = fmt::format(
-      "<svg viewBox=\"0 0 {} {}\" role=\"img\" "
-      "aria-label=\"JND by subject and condition\">",
-      kWidth, kHeight);
-  const double step = most > 40 ? 20 : most > 12 ? 5 : most > 4 ? 2 : 1;
-  for (double ms = 0; ms <= most; ms += step)
-    svg += fmt::format(
-        "<line class=\"axis\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
-        "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>",
-        kLeft, kWidth, floor - ms * per_ms, kLeft - 6, floor - ms * per_ms + 4, ms);
-  const auto subjects = static_cast<double>(comparison.subjects.size()),
-             conditions = static_cast<double>(comparison.conditions.size());
-  const double group = (kWidth - kLeft) / subjects, bar = std::min(30.0, 0.7 * group / conditions);
-  for (std::size_t s = 0; s < comparison.subjects.size(); ++s) {
-    const double middle = kLeft + group * (static_cast<double>(s) + 0.5);
-    for (std::size_t c = 0; c < comparison.conditions.size(); ++c) {
-      const double height = comparison.values[c][s] * per_ms;
-      svg += fmt::format(
-          "<rect class=\"bar{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
-          "height=\"{:.1f}\"><title>{}, {}: {:.2f} ms</title></rect>",
-          c % 2, middle + (static_cast<double>(c) - conditions / 2) * bar, floor - height, bar - 2,
-          height, escaped(comparison.subjects[s]), escaped(comparison.conditions[c]),
-          comparison.values[c][s]);
-    }
-    if (subjects <= 40)
-      svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", middle,
-                         kHeight - 10, escaped(comparison.subjects[s]));
-  }
-  for (std::size_t c = 0; c < comparison.conditions.size(); ++c)
-    svg += fmt::format(
-        "<rect class=\"bar{}\" x=\"{}\" y=\"6\" width=\"12\" height=\"12\"/>"
-        "<text x=\"{}\" y=\"16\">{}</text>",
-        c % 2, kLeft + 150 * static_cast<double>(c), kLeft + 18 + 150 * static_cast<double>(c),
-        escaped(comparison.conditions[c]));
-  return svg + "<text x=\"0\" y=\"16\">ms</text></svg>";
-}
-
 std::string sessions_of(const JndFindings& findings) {
   if (findings.sessions.empty()) return "";
   std::string rows =
@@ -212,11 +143,11 @@ nlohmann::json to_json(const JndFindings& findings) {
 }
 
 std::string page_of(const JndFindings& findings, const std::string& heat) {
-  std::string page(kHead);
+  std::string page = page_head("Just noticeable delay");
   page +=
       "<p>The delay of light on a moving hand that people notice in 75 % of the comparisons with "
       "perfect light.</p>";
-  page += fmt::format("<figure>{}</figure><pre>{}</pre>", bars_of(findings.comparison),
+  page += fmt::format("<figure>{}</figure><pre>{}</pre>", bars_of(findings.comparison, "ms"),
                       escaped(describe(findings.comparison, "ms")));
   if (!heat.empty())
     page += fmt::format(

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/studies/jnd/options.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 
 #include "ipc/base/command_line.hpp"
+#include "services/studies/jnd/run.hpp"
 
 namespace handcast::study {
 namespace {

@@ -119,12 +119,7 @@ Result<std::string> run(const JndOptions& options) {
   if (!options.analysed.empty()) return analyse_files(options);
   if (options.simulates) return simulate(options);
   if (!options.picture_file.empty()) return write_picture(options);
-#ifdef HANDCAST_WITH_WINDOW
   return take_course(options).map([](const auto& sentence) { return sentence + "\n"; });
-#else
-  return fail(Errc::bad_config,
-              "this build cannot show a study: it was made without GLFW or cairo");
-#endif
 }
 
 }  // namespace

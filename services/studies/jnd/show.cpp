@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
 #include "services/lab/gallery/lit_skin.hpp"
 #include "services/tools/preview/canvas/canvas.hpp"
 
@@ -31,19 +32,39 @@ Result<std::unique_ptr<StudyScreen>> StudyScreen::open(renderer::WindowSettings 
   const int width_px = settings.width_px, height_px = settings.height_px;
   auto window = renderer::Window::open(std::move(settings));
   if (!window) return tl::make_unexpected(window.error());
-  return std::unique_ptr<StudyScreen>(
+  auto screen = std::unique_ptr<StudyScreen>(
       new StudyScreen(std::move(*window), width_px, height_px, rate_hz));
+  if (auto found = screen->find_rhythm(); !found) return tl::make_unexpected(found.error());
+  return screen;
+}
+
+Result<void> StudyScreen::find_rhythm() {
+  const auto refresh_ns = window_->refresh_ns();
+  const renderer::Texture dark(width_px_, height_px_, gallery::kNight);
+  constexpr int kSettling = 5, kShown = 20;
+  std::int64_t begin_ns = 0, end_ns = 0;
+  for (int picture = 0; picture < kSettling + kShown; ++picture) {
+    const auto shown = window_->show(dark.view(), {0, 0, width_px_, height_px_});
+    if (!shown) return tl::make_unexpected(shown.error());
+    (picture < kSettling ? begin_ns : end_ns) = shown->shown_ns;
+  }
+  last_ns_ = end_ns;
+  waits_ = refresh_ns && end_ns - begin_ns > kShown * *refresh_ns * 7 / 10;
+  if (!waits_)
+    log::warning(
+        "the window does not wait for the monitor: what is known of its refreshes is only "
+        "when pictures were handed over");
+  return {};
 }
 
 double StudyScreen::period_ms() const {
-  const auto refresh_ns = window_->refresh_ns();
-  return refresh_ns ? ns_to_ms(*refresh_ns) : 1e3 / rate_hz_;
+  return waits_ ? ns_to_ms(*window_->refresh_ns()) : 1e3 / rate_hz_;
 }
 
 Result<renderer::Shown> StudyScreen::show(renderer::View<const std::uint32_t> picture,
                                           const renderer::Rect& region) {
   if (window_->is_closed()) return fail(Errc::disconnected, "the window was closed");
-  if (!window_->refresh_ns()) sleep_until_ns(last_ns_ + ms_to_ns(period_ms()));
+  if (!waits_) sleep_until_ns(last_ns_ + ms_to_ns(period_ms()));
   auto shown = window_->show(picture, region);
   if (shown) last_ns_ = shown->shown_ns;
   return shown;

@@ -34,8 +34,9 @@ inline constexpr std::string_view kEscape = "Escape", kGoOn = " ";
 /// The screen in front of the subject. The main thread.
 class StudyScreen {
  public:
-  /// Opens the window. `rate_hz`: how often pictures are shown if the monitor does not say. Errors:
-  /// those of renderer::Window::open().
+  /// Opens the window and finds out whether it waits for the refreshes of the monitor. If it does
+  /// not, a warning is in the log, and `rate_hz` pictures a second are shown by the clock of the
+  /// computer. Errors: those of renderer::Window::open() and show().
   static Result<std::unique_ptr<StudyScreen>> open(renderer::WindowSettings settings,
                                                    double rate_hz);
 
@@ -60,11 +61,13 @@ class StudyScreen {
       : window_(std::move(window)), width_px_(width_px), height_px_(height_px), rate_hz_(rate_hz) {}
   Result<renderer::Shown> show(renderer::View<const std::uint32_t> picture,
                                const renderer::Rect& region);
+  Result<void> find_rhythm();
   renderer::Texture page(const std::vector<std::string>& lines) const;
 
   std::unique_ptr<renderer::Window> window_;
   int width_px_, height_px_;
   double rate_hz_;
+  bool waits_ = false;        ///< show() returns with the refresh
   std::int64_t last_ns_ = 0;  ///< when the last picture was shown
 };
 

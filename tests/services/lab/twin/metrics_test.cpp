@@ -24,6 +24,23 @@ FrameScore::Hand hand_at(double speed_m_s, float error_px, Side side = Side::lef
   return hand;
 }
 
+TEST(Metrics, EdgesOfTheLightInsideTheHandMakeDelaysEasierToNotice) {
+  const auto jnd_ms = [](double seam_px) {
+    Metrics metrics;
+    FrameScore score;
+    score.hands = {hand_at(0.2, 1)};
+    score.hands[0].seam_px = seam_px;
+    score.hands[0].outline_px = 600;
+    metrics.add(score);
+    const auto json = metrics.to_json();
+    EXPECT_NEAR(json["late_jnds"].get<double>() * json["jnd_ms"].get<double>(), 4, 1e-9);
+    return json["jnd_ms"].get<double>();
+  };
+  EXPECT_NEAR(jnd_ms(600), 3.05, 0.05);
+  EXPECT_NEAR(jnd_ms(5000), jnd_ms(600), 1e-9);
+  EXPECT_GT(jnd_ms(0), 2 * jnd_ms(600));
+}
+
 TEST(Metrics, TheRungsAreSharesOfTheHandsThatWereDrawn) {
   Metrics metrics;
   for (int i = 0; i < 3; ++i) metrics.add_rung(msg::Rung::landmarks);
@@ -85,8 +102,8 @@ TEST(Metrics, EveryFigureComesOutUnderItsName) {
 
 TEST(Metrics, NothingMeasuredIsNullAndNotZero) {
   const auto json = Metrics().to_json();
-  for (const char* key :
-       {"coverage", "spill", "iou", "seam_px", "jitter_px", "equivalent_latency_ms"})
+  for (const char* key : {"coverage", "spill", "iou", "seam_px", "jitter_px",
+                          "equivalent_latency_ms", "jnd_ms", "late_jnds"})
     EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["frame_us"]["p50"].is_null());
   EXPECT_EQ(json["frames"], 0);

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/command_line.hpp"
+#include "ipc/base/exit_code.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/base/write_whole.hpp"
+#include "services/lab/twin/random.hpp"
+#include "services/studies/base/rig_hand.hpp"
+#include "services/studies/character/course.hpp"
+#include "services/studies/character/picture.hpp"
+
+namespace handcast::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostSubjects = 999;
+constexpr int kWidth_px = 640, kHeight_px = 400;
+constexpr char kNotes[] =
+    R"(Start it beside a rig that is up. The palm shows a character, four finger tips show one each: bend the finger with the
+character of the palm, as fast as you can. A session has 20 rounds; 24 sessions with and without the corrections of the
+rig in turn, on the palm and on the back, after 4 for training. The log is DIR/character-NN.csv; a session that was left
+with Ctrl-C, or by a crash, is begun again when the command is given again.
+
+  handcast study character DIR --subject 1             a subject
+  handcast study character --analyse DIR --page OUT    times, t-test and difficulty, as in the paper)";
+
+struct Options {
+  std::string folder = "character", rig, json_file, page_folder;
+  std::vector<std::string> analysed;
+  int subject = 1, tests = 24, rounds = 20, difficulty = 0;
+  double seed = 1;
+  msg::Side side = msg::Side::left;
+};
+
+std::string log_name(int subject) { return fmt::format("character-{:02}.csv", subject); }
+
+/// The files, and the logs in the folders.
+std::vector<fs::path> logs_in(const std::vector<std::string>& names) {
+  std::vector<fs::path> files;
+  for (const auto& name : names) {
+    std::error_code failed;
+    if (!fs::is_directory(name, failed)) {
+      files.emplace_back(name);
+      continue;
+    }
+    for (int subject = 1; subject <= kMostSubjects; ++subject)
+      if (auto file = fs::path(name) / log_name(subject); fs::exists(file, failed))
+        files.push_back(std::move(file));
+  }
+  return files;
+}
+
+Result<std::string> analyse_logs(const Options& options) {
+  std::vector<StudyTable> logs;
+  for (const auto& file : logs_in(options.analysed)) {
+    auto log = read_study_table(file);
+    if (!log) return tl::make_unexpected(log.error());
+    logs.push_back(std::move(*log));
+  }
+  const auto findings = analyse_characters(logs);
+  if (!findings) return tl::make_unexpected(findings.error());
+  std::string text = describe(findings->seconds, "s");
+  if (!options.json_file.empty())
+    if (auto written = write_whole(options.json_file, to_json(*findings).dump(2) + "\n"); !written)
+      return tl::make_unexpected(written.error());
+  if (options.page_folder.empty()) return text;
+  std::error_code ignored;
+  fs::create_directories(options.page_folder, ignored);
+  const auto page = fs::path(options.page_folder) / "index.html";
+  if (auto written = write_whole(page, page_of(*findings)); !written)
+    return tl::make_unexpected(written.error());
+  return text + page.string() + "\n";
+}
+
+/// One subject at the rig.
+class Play {
+ public:
+  Play(const Options& options, StudyLog log, RigHand hand, CharacterPicture picture)
+      : options_(options),
+        log_(std::move(log)),
+        hand_(std::move(hand)),
+        picture_(std::move(picture)) {}
+
+  Result<std::string> run() {
+    const auto sessions = character_sessions(options_.subject, options_.tests);
+    const auto done = static_cast<std::size_t>(sessions_done(log_.earlier()));
+    for (std::size_t s = done; s < sessions.size(); ++s)
+      if (auto played = play(sessions[s], sessions.size()); !played)
+        return tl::make_unexpected(played.error());
+    return fmt::format("Subject {} has done all sessions.\n", options_.subject);
+  }
+
+ private:
+  Result<void> play(const CharacterSession& session, std::size_t sessions) {
+    fmt::print("Session {} of {}{}: show the {} of your hand to the light.\n", session.number + 1,
+               sessions, session.is_training ? ", for training" : "",
+               session.face == Face::palm ? "palm" : "back");
+    std::fflush(stdout);
+    if (auto set = hand_.set(settings_of(session.is_corrected)); !set) return set;
+    const auto seed = twin::mixed(
+        static_cast<std::uint64_t>(options_.seed) ^
+        twin::mixed(static_cast<std::uint64_t>(1000 * options_.subject + session.number)));
+    CharacterGame game(seed, options_.rounds);
+    while (!game.is_over()) {
+      if (auto waited = hand_.wait(); !waited) return waited;
+      const auto answered = game.results().size();
+      game.step(ns_to_seconds(now_ns()), hand_.joints() ? &*hand_.joints() : nullptr);
+      if (auto shown = hand_.show(picture_.draw(game.scene(), session.face)); !shown) return shown;
+      if (game.results().size() == answered) continue;
+      const auto& answer = game.results().back();
+      if (auto kept = log_.add(
+              line_of(options_.subject, session, static_cast<int>(game.results().size()), answer));
+          !kept)
+        return kept;
+      fmt::print("  {:2}  {:.2f} s  {}\n", game.results().size(), answer.seconds,
+                 answer.is_correct() ? "right" : "wrong");
+      std::fflush(stdout);
+    }
+    const auto difficulty = ask_difficulty();
+    if (!difficulty) return tl::make_unexpected(difficulty.error());
+    return log_.add(line_of(options_.subject, session, *difficulty));
+  }
+
+  Result<int> ask_difficulty() const {
+    if (options_.difficulty > 0) return options_.difficulty;
+    for (;;) {
+      fmt::print("How difficult was the task? 1 (easy) to 5 (hard): ");
+      std::fflush(stdout);
+      std::string line;
+      if (!std::getline(std::cin, line))
+        return fail(Errc::disconnected, "the question of difficulty was not answered");
+      if (line.size() == 1 && line[0] >= '1' && line[0] <= '5') return line[0] - '0';
+    }
+  }
+
+  Options options_;
+  StudyLog log_;
+  RigHand hand_;
+  CharacterPicture picture_;
+};
+
+Result<std::string> run(const Options& options) {
+  if (!options.analysed.empty()) return analyse_logs(options);
+  auto log =
+      StudyLog::open(fs::path(options.folder) / log_name(options.subject), character_columns());
+  if (!log) return tl::make_unexpected(log.error());
+  auto hand = RigHand::open(options.rig, options.side, kWidth_px, kHeight_px, "study character");
+  if (!hand) return tl::make_unexpected(hand.error());
+  const bool is_left = options.side == msg::Side::left;
+  const auto& files = hand->rig().hand;
+  const auto mesh =
+      renderer::load_hand_or_default(is_left ? files.left : files.right, options.side);
+  if (!mesh) return tl::make_unexpected(mesh.error());
+  CharacterPicture picture(*mesh, kWidth_px, kHeight_px);
+  return Play(options, std::move(*log), std::move(*hand), std::move(picture)).run();
+}
+
+}  // namespace
+
+int run_character(int argc, char** argv) {
+  Options options;
+  CommandLine line("handcast study character",
+                   "Guess the Character: how fast people read and act on what is on their hand.",
+                   kNotes);
+  line.add("[DIR]", options.folder, "The folder of the study");
+  line.add("--subject N", options.subject, "The subject, a number instead of a name",
+           {1, kMostSubjects});
+  line.add("--seed S", options.seed, "Seed of all random numbers", {0, 1e15});
+  line.add("--rig NAME", options.rig, "Which rig, if several are up");
+  line.add(
+      "--hand left|right",
+      [&](const std::string& side) {
+        options.side = side == "left" ? msg::Side::left : msg::Side::right;
+        return Result<void>();
+      },
+      "The hand that is lit");
+  line.add("--sessions N", options.tests, "Sessions after the training", {2, 200});
+  line.add("--rounds N", options.rounds, "Rounds of a session", {1, 200});
+  line.add("--difficulty D", options.difficulty,
+           "Answers the question of difficulty at once, to try the program", {1, 5});
+  line.add("--analyse FILE", options.analysed, "Analyses logs, or a folder of logs");
+  line.add("--json FILE", options.json_file, "Writes the results");
+  line.add("--page DIR", options.page_folder, "Writes the results as a page, DIR/index.html");
+  if (const auto code = line.answered(argc, argv)) return *code;
+  const auto done = run(options);
+  if (!done) {
+    fmt::print(stderr, "handcast study character: {}\n", printable(done.error().what));
+    return exit_code_of(done.error());
+  }
+  fmt::print("{}", *done);
+  return kExitDone;
+}
+
+}  // namespace handcast::study
