@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// handcast study: what researchers do with light on hands.
+// handcast study: studies and games with light on hands.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "ipc/base/quote.hpp"
 #include "services/studies/character/course.hpp"
 #include "services/studies/jnd/run.hpp"
+#include "services/studies/shooter/run.hpp"
 
 namespace handcast::study {
 namespace {
@@ -25,6 +26,7 @@ constexpr std::array kStudies{
     Study{"jnd", "Which delay of light people notice, on a screen.", run_jnd},
     Study{"character", "How fast people read characters on their hand and act on them.",
           run_character},
+    Study{"shooter", "A game on the palm, steered by tilting it.", run_shooter},
 };
 
 int explain(std::FILE* out) {

@@ -66,7 +66,7 @@ constexpr std::array kVerbs{
               Group::set_up},
     VerbEntry{"gallery", "Shows looks on the moving hands of the digital twin, as a page.", nullptr,
               Group::look},
-    VerbEntry{"study", "Runs the studies of the paper with people, and analyses them.", nullptr,
+    VerbEntry{"study", "Runs studies and games with people, and analyses them.", nullptr,
               Group::score},
     VerbEntry{"simulate", "Scores a rig in virtual time against its digital twin.", nullptr,
               Group::score},

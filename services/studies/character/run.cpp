@@ -10,6 +10,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
+#include "ipc/daemon/stop_signal.hpp"
 #include "services/lab/twin/random.hpp"
 #include "services/studies/base/rig_hand.hpp"
 #include "services/studies/character/course.hpp"
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostSubjects = 999;
-constexpr int kWidth_px = 640, kHeight_px = 400;
+constexpr int kWidth_px = 1024, kHeight_px = 640;
 constexpr char kNotes[] =
     R"(Start it beside a rig that is up. The palm shows a character, four finger tips show one each: bend the finger with the
 character of the palm, as fast as you can. A session has 20 rounds; 24 sessions with and without the corrections of the
@@ -109,6 +110,7 @@ class Play {
         twin::mixed(static_cast<std::uint64_t>(1000 * options_.subject + session.number)));
     CharacterGame game(seed, options_.rounds);
     while (!game.is_over()) {
+      if (daemon::stop_requested()) return fail(Errc::disconnected, "the session was left");
       if (auto waited = hand_.wait(); !waited) return waited;
       const auto answered = game.results().size();
       game.step(ns_to_seconds(now_ns()), hand_.joints() ? &*hand_.joints() : nullptr);
@@ -189,6 +191,7 @@ int run_character(int argc, char** argv) {
   line.add("--json FILE", options.json_file, "Writes the results");
   line.add("--page DIR", options.page_folder, "Writes the results as a page, DIR/index.html");
   if (const auto code = line.answered(argc, argv)) return *code;
+  daemon::install_stop_signals();  // so that the rig shows again what it showed before
   const auto done = run(options);
   if (!done) {
     fmt::print(stderr, "handcast study character: {}\n", printable(done.error().what));
