@@ -12,6 +12,7 @@
 #include "ipc/base/quote.hpp"
 #include "services/studies/character/course.hpp"
 #include "services/studies/jnd/run.hpp"
+#include "services/studies/pose/run.hpp"
 #include "services/studies/shooter/run.hpp"
 
 namespace handcast::study {
@@ -26,6 +27,7 @@ constexpr std::array kStudies{
     Study{"jnd", "Which delay of light people notice, on a screen.", run_jnd},
     Study{"character", "How fast people read characters on their hand and act on them.",
           run_character},
+    Study{"pose", "Poses to match, for play and for rehabilitation.", run_pose},
     Study{"shooter", "A game on the palm, steered by tilting it.", run_shooter},
 };
 

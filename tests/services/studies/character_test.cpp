@@ -44,7 +44,6 @@ class Played : public testing::Test {
                                      std::ranges::find(game_.scene().tips, game_.scene().palm)));
   }
 
-  static constexpr double kStep_s = 1.0 / 60;
   CharacterGame game_{5, 20};
   double now_s_ = 100;
 };

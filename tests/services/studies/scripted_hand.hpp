@@ -7,6 +7,8 @@
 
 namespace handcast::study {
 
+inline constexpr double kStep_s = 1.0 / 60;  ///< between the samples of scripted hands
+
 /// The joints of a hand of which some fingers (index to little) are bent, m: it lies in the plane
 /// z = 0, fingers along y.
 inline std::array<glm::vec3, msg::kJoints> hand_with(const std::array<bool, 4>& bent) {

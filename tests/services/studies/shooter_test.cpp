@@ -12,8 +12,6 @@
 namespace handcast::study {
 namespace {
 
-constexpr double kStep_s = 1.0 / 60;
-
 class Shooter : public testing::Test {
  protected:
   void play(double seconds, float steer, bool is_seen = true) {
