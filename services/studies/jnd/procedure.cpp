@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRise = 3;  ///< steps up after a wrong answer, for one down after a right one
 constexpr double kHighStart_ms = 40, kLowStart_ms = 0;
-constexpr int kQuestTrials = 60;  ///< for ±0.5 ms: see docs/studies.md
+constexpr int kQuestTrials = 60;  ///< between those of one and of two staircases
 
 }  // namespace
 

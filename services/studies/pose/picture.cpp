@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kSkin = 0xff3a2a1c, kWon = 0xff60c060, kPaper = 0xff20160e,
                         kInk = 0xffffffff;
-constexpr float kDrawing_mm = 46, kSmaller = 0.24f, kLine_mm = 0.9f;
+constexpr float kDrawing_mm = 46, kSmaller = 0.24f, kLine_mm = 1.3f;
 constexpr float kRed = 0.5f;  ///< scores up to here are as red as can be
 
 /// From red over yellow to green.
