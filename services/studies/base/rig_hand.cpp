@@ -49,10 +49,7 @@ Result<RigHand> RigHand::open(const std::string& rig, msg::Side side, int width_
   if (opened != HANDCAST_OK) return failure(opened);
   auto board = config::LiveBoard::open(ring->rig);
   if (!board) return tl::make_unexpected(board.error());
-  RigHand hand(std::move(owned), std::move(*board), side, program);
-  const std::string path = side == msg::Side::left ? "content.left" : "content.right";
-  if (auto set = hand.set({path + "=program:"}); !set) return tl::make_unexpected(set.error());
-  return hand;
+  return RigHand(std::move(owned), std::move(*board), side, program);
 }
 
 RigHand::RigHand(RigHand&&) noexcept = default;
@@ -87,7 +84,11 @@ Result<void> RigHand::show(renderer::View<const std::uint32_t> picture) {
     std::memcpy(pixels + std::size_t{4} * static_cast<std::size_t>(y * picture.width),
                 picture.row(y), std::size_t{4} * static_cast<std::size_t>(picture.width));
   const auto shown = handcast_publish(content_.get(), 0);
-  return shown == HANDCAST_DISCONNECTED ? Result<void>(failure(shown)) : Result<void>();
+  if (shown == HANDCAST_DISCONNECTED) return failure(shown);
+  if (shown != HANDCAST_OK || is_shown_) return {};
+  is_shown_ = true;
+  const std::string path = side_ == msg::Side::left ? "content.left" : "content.right";
+  return set({path + "=program:"});  // not before there is a picture: the hand would be dark
 }
 
 Result<void> RigHand::set(const std::vector<std::string>& assignments) {

@@ -17,8 +17,8 @@ struct handcast_content;
 namespace handcast::study {
 
 /// A hand of a rig that is up, as a program sees it that draws on it: by the interface for other
-/// people's programs (handcast.h). The rig shows the program's pictures as long as this object
-/// lives, and what it showed before afterwards; if the program dies, its last picture stays.
+/// people's programs (handcast.h). The rig shows the program's pictures from the first one on, and
+/// what it showed before when this object is gone; if the program dies, its last picture stays.
 /// One thread.
 class RigHand {
  public:
@@ -59,6 +59,7 @@ class RigHand {
   msg::Side side_;
   std::string program_;
   std::optional<Joints> joints_;
+  bool is_shown_ = false;                ///< the rig shows these pictures
   std::vector<std::string> afterwards_;  ///< assignments that take back what was set
 };
 

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Games beside a rig.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <algorithm>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/client/stream.hpp"
+#include "ipc/control/rig_address.hpp"
+#include "ipc/msg/projection.hpp"
+#include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
+
+namespace handcast::system_test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+/// True if a frame lights a hand, at least as the night sky of the shooter does.
+bool is_lit(const msg::Projection& frame) {
+  const std::size_t count = std::size_t{frame.region_width_px} * frame.region_height_px;
+  return std::any_of(frame.pixels(), frame.pixels() + count,
+                     [](auto pixel) { return (pixel >> 16 & 0xff) > 30; });
+}
+
+class RigWithAGame : public SystemTest {
+ protected:
+  std::string shown() const {
+    return nlohmann::json::parse(handcast({"content", "--json"}).output)["left"]["content"];
+  }
+};
+
+TEST_F(RigWithAGame, AGameThatIsKilledLeavesNoDarkFrameAndOneThatEndsGivesTheHandBack) {
+  const auto rig =
+      up({"--set", "content.left=builtin:white", "--set", "twin.motion=builtin:still"});
+  wait_until_light();
+  const Variable scope(control::kScopeVariable, scratch_.path().string());
+  auto frames = client::open_stream<msg::Projection>("twin", "projection.frames");
+  ASSERT_TRUE(frames) << frames.error().what;
+  int seen = 0, dark = 0;
+  const auto watch = [&](std::chrono::milliseconds time) {
+    for (const auto end = Deadline::in(time); !end.passed();) {
+      const auto frame = frames->next(Deadline::in(100ms));
+      if (!frame || (*frame)->hand_count == 0) continue;
+      ++seen;
+      dark += !is_lit(**frame);
+    }
+  };
+  for (int time = 0; time < 6; ++time) {
+    Command game(scratch_.path(), {"study", "shooter"});
+    watch(1500ms);
+    game.signal(SIGKILL);
+    game.wait();
+    watch(300ms);
+    EXPECT_EQ(shown(), "program:");
+  }
+  EXPECT_GT(seen, 100);
+  EXPECT_EQ(dark, 0);
+
+  ASSERT_EQ(handcast({"content", "builtin:checker"}).exit_code, 0);
+  Command game(scratch_.path(), {"study", "shooter"});
+  ASSERT_TRUE(eventually([&] { return shown() == "program:"; })) << game.log();
+  game.signal(SIGTERM);
+  EXPECT_EQ(game.wait(), 0);
+  EXPECT_THAT(game.output(), HasSubstr("Best score"));
+  EXPECT_EQ(shown(), "builtin:checker");
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+}
+
+TEST_F(RigWithAGame, ASessionOfTheCharacterStudySwitchesTheCorrectionsAndBack) {
+  const auto rig = up({"--set", "twin.motion=builtin:count"});
+  wait_until_light();
+  const auto folder = (scratch_.path() / "study").string();
+  Command study(scratch_.path(), {"study", "character", folder, "--rounds", "1", "--sessions", "2",
+                                  "--difficulty", "2"});
+  ASSERT_TRUE(eventually([&] {
+    return handcast({"get", "cascade.correct.method"}).output.find("none") != std::string::npos;
+  })) << study.log();
+  ASSERT_TRUE(eventually([&] {
+    return study.output().find("Session 3 of 6") != std::string::npos;
+  })) << study.output()
+      << study.log();
+  study.signal(SIGINT);
+  EXPECT_NE(study.wait(), 0);
+  EXPECT_EQ(handcast({"get", "--changed"}).output, "");
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  const auto without = handcast({"study", "shooter"});
+  EXPECT_NE(without.exit_code, 0);
+  EXPECT_THAT(without.log, HasSubstr("no rig"));
+}
+
+}  // namespace
+}  // namespace handcast::system_test
