@@ -54,7 +54,7 @@ TEST_F(RigWithAGame, AGameThatIsKilledLeavesNoDarkFrameAndOneThatEndsGivesTheHan
     game.signal(SIGKILL);
     game.wait();
     watch(300ms);
-    EXPECT_EQ(shown(), "program:");
+    EXPECT_TRUE(eventually([&] { return shown() == "program:"; })) << shown();
   }
   EXPECT_GT(seen, 100);
   EXPECT_EQ(dark, 0);
@@ -65,7 +65,7 @@ TEST_F(RigWithAGame, AGameThatIsKilledLeavesNoDarkFrameAndOneThatEndsGivesTheHan
   game.signal(SIGTERM);
   EXPECT_EQ(game.wait(), 0);
   EXPECT_THAT(game.output(), HasSubstr("Best score"));
-  EXPECT_EQ(shown(), "builtin:checker");
+  EXPECT_TRUE(eventually([&] { return shown() == "builtin:checker"; })) << shown();
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
 }
 
@@ -84,7 +84,7 @@ TEST_F(RigWithAGame, ASessionOfTheCharacterStudySwitchesTheCorrectionsAndBack) {
       << study.log();
   study.signal(SIGINT);
   EXPECT_NE(study.wait(), 0);
-  EXPECT_EQ(handcast({"get", "--changed"}).output, "");
+  EXPECT_TRUE(eventually([&] { return handcast({"get", "--changed"}).output.empty(); }));
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
   const auto without = handcast({"study", "shooter"});
   EXPECT_NE(without.exit_code, 0);
