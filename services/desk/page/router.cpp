@@ -205,6 +205,7 @@ HttpAnswer Router::route(const HttpRequest& request) {
     return refusal(405, "Only GET and POST are understood here.");
   if (is_post && !is_json(request)) return refusal(415, "A change is sent as application/json.");
   if (is_post && request.path == "/api/session") return open_session(request);
+  if (is_post && request.path == "/api/pair" && request.is_encrypted) return pair(request);
   if (!is_post)
     for (const auto& file : kFiles)
       if (file.path == request.path)
@@ -215,9 +216,10 @@ HttpAnswer Router::route(const HttpRequest& request) {
                 .stream = nullptr};
   const auto role = access_.role_of(request);
   if (!role)
-    return refusal(401,
-                   "Open the address that `handcast desk` prints: this browser has no valid "
-                   "token.");
+    return refusal(401, request.is_encrypted
+                            ? "Enter the code that `handcast desk --lan` prints."
+                            : "Open the address that `handcast desk` prints: this browser has no "
+                              "valid token.");
   return is_post ? post(request, *role) : get(request, *role);
 }
 
@@ -229,7 +231,19 @@ HttpAnswer Router::open_session(const HttpRequest& request) {
   const auto role = access_.role_of_token(token);
   if (!role) return refusal(401, "This token is not valid (any more); `handcast desk` prints one.");
   auto answer = answer_of(200, {{"role", control::kRoleNames[static_cast<std::size_t>(*role)]}});
-  answer.headers.emplace_back("Set-Cookie", access_.cookie_of(token));
+  answer.headers.emplace_back("Set-Cookie", access_.cookie_of(token, request));
+  return answer;
+}
+
+HttpAnswer Router::pair(const HttpRequest& request) {
+  const auto body = json::parse(request.body, nullptr, false);
+  if (!body.is_object() || !body.contains("code") || !body["code"].is_string())
+    return refusal(400, "The request has no text \"code\".");
+  const auto token = access_.pair(body["code"].get<std::string>());
+  if (!token) return refusal(token.error().code == Errc::bad_data ? 401 : 403, token.error().what);
+  log::info("page: {} has entered the code", request.peer);
+  auto answer = answer_of(200, json::object());
+  answer.headers.emplace_back("Set-Cookie", access_.cookie_of(*token, request));
   return answer;
 }
 
@@ -262,6 +276,7 @@ HttpAnswer Router::post(const HttpRequest& request, Role role) {
   if (role < action->least)
     return refusal(403, fmt::format("Only the {} may do that.",
                                     control::kRoleNames[static_cast<std::size_t>(action->least)]));
+  if (is_too_often()) return refusal(429, "There are too many changes at once.");
   const auto source =
       fmt::format("page {} {}", control::kRoleNames[static_cast<std::size_t>(role)], request.peer);
   const auto done = act(worked_, *action, request.body, source);

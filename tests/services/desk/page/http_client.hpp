@@ -31,6 +31,7 @@ class Wire {
   }
 
   bool is_open() const { return is_open_; }
+  int fd() const { return fd_.get(); }
   /// False: the other end has closed.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
