@@ -50,7 +50,7 @@ void describe(Visitor& visitor, DeskMidi& midi) {
 struct DeskPage {
   std::string listen = "127.0.0.1:8480";
   std::string lan;
-  std::string recordings = "recordings";
+  std::string recordings;
 };
 
 template <class Visitor>
@@ -62,8 +62,10 @@ void describe(Visitor& visitor, DeskPage& page) {
                 "Where the page is also served to phones and other computers, encrypted, e.g. "
                 "\"0.0.0.0:8481\": to all that reach this one (`handcast desk --lan` prints the "
                 "address and a code). Empty: nowhere.");
-  visitor.field("recordings", page.recordings,
-                "The folder of the recordings that the page lists and makes.");
+  visitor.field(
+      "recordings", page.recordings,
+      "The folder of the recordings that the page lists and makes. Empty: recordings/ beside "
+      "the rig file.");
 }
 
 /// [desk]

@@ -74,7 +74,7 @@ int sign(gnutls_x509_crt_t certificate, gnutls_x509_privkey_t key,
   const std::time_t now = std::time(nullptr);
   std::array<unsigned char, 16> serial{};
   if (const int failed = gnutls_rnd(GNUTLS_RND_NONCE, serial.data(), serial.size())) return failed;
-  serial[0] = serial[0] & 0x3f | 0x40;  // positive, and of 16 bytes
+  serial[0] = (serial[0] & 0x3f) | 0x40;  // positive, and of 16 bytes
   for (const auto& name : names) add_name(certificate, name);
   const std::string_view common = "handcast desk";
   for (const int failed :

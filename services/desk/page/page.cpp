@@ -11,10 +11,13 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "services/desk/page/access.hpp"
+#include "services/desk/page/actions.hpp"
 #include "services/desk/page/board.hpp"
 #include "services/desk/page/certificate.hpp"
+#include "services/desk/page/facts.hpp"
 #include "services/desk/page/http_server.hpp"
 #include "services/desk/page/picture_feed.hpp"
+#include "services/desk/page/programs.hpp"
 #include "services/desk/page/rig_watch.hpp"
 #include "services/desk/page/router.hpp"
 
@@ -84,17 +87,27 @@ std::vector<std::string> own_names() {
   return names;
 }
 
+std::filesystem::path recordings_of(const config::Rig& rig, const std::filesystem::path& rig_file) {
+  if (!rig.desk.page.recordings.empty()) return rig.desk.page.recordings;
+  return rig_file.empty() ? rig_file : rig_file.parent_path() / "recordings";
+}
+
 /// Everything of the page. The members are destroyed in the reverse order: first the connections,
 /// which use all others.
 class Page final : public Surface {
  public:
-  Page(const config::Rig& rig, Panel& panel, CueDeck* cues, std::unique_ptr<Access> access,
-       calib::CameraModel camera)
+  Page(const config::Rig& rig, const PageWorks& works, std::unique_ptr<Access> access,
+       const calib::Calibration& calibration)
       : access_(std::move(access)),
-        board_(panel.controls()),
-        watch_(rig.name, panel, cues, board_),
-        pictures_(rig.name, camera),
-        router_({rig.name, panel, cues}, *access_, board_, pictures_) {}
+        board_(works.panel.controls()),
+        programs_(rig.name, works.rig_file, recordings_of(rig, works.rig_file)),
+        worked_{rig.name, works.panel, works.cues, works.midi, programs_},
+        watch_(worked_, board_),
+        pictures_(rig.name, calibration.camera),
+        router_(worked_, *access_, board_, pictures_) {
+    board_.tell(Topic::calibration, calibration_facts(rig, works.rig_file, calibration));
+    board_.tell(Topic::cue_list, cue_facts(rig.desk.cues, works.panel.controls()));
+  }
   Page(const Page&) = delete;
   Page& operator=(const Page&) = delete;
   ~Page() override {
@@ -146,6 +159,8 @@ class Page final : public Surface {
 
   std::unique_ptr<Access> access_;
   Board board_;
+  Programs programs_;
+  Worked worked_;
   RigWatch watch_;
   PictureFeed pictures_;
   Router router_;
@@ -154,7 +169,7 @@ class Page final : public Surface {
 
 }  // namespace
 
-Result<std::unique_ptr<Surface>> open_page(const config::Rig& rig, Panel& panel, CueDeck* cues) {
+Result<std::unique_ptr<Surface>> open_page(const config::Rig& rig, const PageWorks& works) {
   if (rig.desk.page.listen.empty()) return nullptr;
   const auto listen = parse_listen(rig.desk.page.listen, kListen);
   if (!listen) return tl::make_unexpected(listen.error());
@@ -168,7 +183,7 @@ Result<std::unique_ptr<Surface>> open_page(const config::Rig& rig, Panel& panel,
   if (!calibration) return tl::make_unexpected(calibration.error());
   auto access = Access::open(rig.name);
   if (!access) return tl::make_unexpected(access.error());
-  auto page = std::make_unique<Page>(rig, panel, cues, std::move(*access), calibration->camera);
+  auto page = std::make_unique<Page>(rig, works, std::move(*access), *calibration);
   if (const auto opened = page->open(*listen, lan); !opened)
     return tl::make_unexpected(opened.error());
   return page;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/desk/page/pairings.hpp"
-
 #include <unistd.h>
 
 #include "ipc/base/log.hpp"
+#include "services/desk/page/access.hpp"
 
 namespace handcast::desk {
 

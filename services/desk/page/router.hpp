@@ -20,6 +20,7 @@ namespace handcast::desk {
 ///   GET  /api/start           who one is; controls, looks, back ends
 ///   GET  /api/events          server-sent events: "values" and those of kTopicNames
 ///   GET  /api/picture         packets of PictureFeed
+///   GET  /api/look/NAME       the picture of a look, PNG
 ///   POST /api/…               see actions.cpp
 class Router {
  public:

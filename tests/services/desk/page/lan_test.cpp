@@ -254,7 +254,7 @@ TEST_F(LanTest, APortThatIsTakenLeavesThePageOnThisComputer) {
 TEST_F(LanTest, AnAddressThatIsNoneIsRefused) {
   for (const auto* lan : {"8481", "0.0.0.0", "0.0.0.0:x", "0.0.0.0:70000"}) {
     rig_.desk.page.lan = lan;
-    const auto page = desk::open_page(rig_, panel_);
+    const auto page = desk::open_page(rig_, {panel_});
     ASSERT_FALSE(page) << lan;
     EXPECT_EQ(page.error().code, Errc::bad_config);
     EXPECT_THAT(page.error().what, HasSubstr("desk.page.lan"));
