@@ -35,10 +35,10 @@ async function askStart() {
     const answer = await fetch('/api/start', {cache: 'no-store'});
     const told = await answer.json();
     if (answer.ok) return notice(''), told;
-    notice(told.error);
-    link('bad', 'no access');
     // From another computer: a code is traded for a cookie.
     $('pair').hidden = answer.status !== 401 || location.protocol !== 'https:';
+    notice($('pair').hidden ? told.error : '');
+    link('bad', 'no access');
   } catch {
     link('bad', 'the desk is away');
   }
@@ -169,7 +169,7 @@ function showTabs() {
 function listenToCode() {
   $('pair').addEventListener('submit', async (event) => {
     event.preventDefault();
-    if (await post('/api/pair', {code: $('code').value.replace(/\D/g, '')})) $('pair').hidden = true;
+    if (await post('/api/pair', {code: $('code').value.replace(/\D/g, '')})) $('pair').hidden = true, say('');
     $('code').value = '';
   });
 }

@@ -179,7 +179,7 @@ export class Cues {
     this.buttons.forEach((button, i) => {
       button.setAttribute('aria-current', String(i === current));
       button.classList.toggle('next', i === next);
-      button.style.setProperty('--faded', i === current ? `${100 * cues.faded}%` : '0%');
+      button.style.setProperty('--faded', i === current && cues.faded < 1 ? `${100 * cues.faded}%` : '0%');
     });
   }
 

@@ -43,7 +43,7 @@ class Wire {
   }
   /// Receives until the other end closes, `text` has come, or the time is over.
   const std::string& receive(std::string_view text = "", std::size_t from = 0,
-                             std::chrono::seconds patience = std::chrono::seconds(20)) {
+                             std::chrono::nanoseconds patience = std::chrono::seconds(20)) {
     const auto until = Deadline::in(patience);
     while (!until.passed() && (text.empty() || received_.find(text, from) == std::string::npos)) {
       pollfd readable{fd_.get(), POLLIN, 0};
