@@ -100,12 +100,25 @@ function showStages(stages) {
     : el('table', {}, el('tr', {}, el('th', {scope: 'col'}, 'stage'), el('th', {}, ''), el('th', {scope: 'col'}, 'p50 ms'), el('th', {scope: 'col'}, 'p99 ms')), ...rows));
 }
 
+const kRungsOver = 20;   // tellings of the status, two a second
+const rungCounts = [];
+/** The shares of the corrections that the gate has chosen lately, the most frequent first. */
+function rungShares(counts) {
+  rungCounts.push(counts);
+  if (rungCounts.length > kRungsOver) rungCounts.shift();
+  const grown = Object.entries(counts).map(([rung, count]) => [rung, count - (rungCounts[0][rung] ?? 0)]).filter(([, count]) => count > 0);
+  const all = grown.reduce((sum, [, count]) => sum + count, 0);
+  return grown.sort((a, b) => b[1] - a[1]).map(([rung, count]) => `${rung} ${Math.round(100 * count / all)} %`).join(', ');
+}
+
 function showFacts(status) {
   const facts = [];
   const sum = (counts) => Object.values(counts ?? {}).reduce((all, count) => all + count, 0);
   if (status.light) facts.push(['missed refreshes', String(status.light.missed_refreshes ?? 0)]);
   if (status.lost_images) facts.push(['lost images', String(sum(status.lost_images))]);
   if (status.tracker_faults) facts.push(['faults of the tracker', String(sum(status.tracker_faults))]);
+  const rungs = rungShares(status.rungs ?? {});
+  if (rungs) facts.push(['corrections that the gate chose', rungs]);
   const drift = status.tracker_drift;
   if (drift) facts.push(['tracker against calibration', `${figure(drift.across_mm)} mm, ${figure(drift.turn_deg)}°${drift.moved ? ': moved' : ''}`]);
   $('facts').replaceChildren(...facts.map(([name, value]) => el('div', {}, el('strong', {}, value), name)));

@@ -60,6 +60,7 @@ nlohmann::json status() {
       {"light", {{"missed_refreshes", 0}, {"doubled_frames", 2}}},
       {"lost_images", {{"missing", 0}, {"skipped", 3}}},
       {"tracker_faults", {{"absent", 1}}},
+      {"rungs", {{"hold", 40}, {"register", 3560}}},
       {"tracker_drift", {{"moved", false}, {"across_mm", 0.4}, {"turn_deg", 0.12}, {"places", 9}}}};
   status["services"]["landmarks"]["reason"] = "the model /models/hand.onnx is missing";
   status["services"]["landmarks"]["log"] = {
@@ -209,7 +210,12 @@ int main() {
     mark.marks[0] = {msg::Stage::light, 0, now_ns(), now_ns()};
     marker.publish(mark);
     (*page)->turn(scene_at(t));
-    if (turn % 30 == 0) midi.bind();
+    if (turn % 30 == 0) {
+      midi.bind();
+      auto later = status();
+      later["rungs"] = {{"hold", turn / 10}, {"register", turn}};
+      fake.say(later);
+    }
   }
   return 0;
 }
