@@ -39,6 +39,7 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "content.left",
                                        "content.right",
                                        "desk.cues",
+                                       "desk.page.recordings",
                                        "twin.motion",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};

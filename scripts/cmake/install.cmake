@@ -16,7 +16,7 @@ install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
 install(DIRECTORY config/rigs DESTINATION ${CMAKE_INSTALL_DOCDIR}/config)
 foreach(file
-    config/REFERENCE.md config/assets/leap/bring_up.txt config/assets/looks.png config/assets/preview.png config/assets/readme.png config/assets/readme_looks.png config/assets/template.png ipc/ring/README.md
+    config/REFERENCE.md config/assets/leap/bring_up.txt config/assets/desk.png config/assets/looks.png config/assets/preview.png config/assets/readme.png config/assets/readme_looks.png config/assets/template.png ipc/ring/README.md
     renderer/README.md scripts/read_recording.py services/lab/training/MODEL_CARD.md
     tests/client/CMakeLists.txt tests/client/draw_ring.c tests/client/draw_waves.py tests/client/read_projections.cpp)
   cmake_path(GET file PARENT_PATH folder)

@@ -10,19 +10,27 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <vector>
 
 #include "config/live/live_board.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/client/stream.hpp"
+#include "ipc/control/desk_address.hpp"
+#include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/projection.hpp"
 #include "tests/bench/control_rig.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/rings_transports.hpp"
+#include "tests/services/desk/page/http_client.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -100,6 +108,92 @@ class OscSender {
   UniqueFd socket_;
 };
 
+/// The page of the desk, as a browser of the owner asks it.
+class Page {
+ public:
+  Page() : address_(needed(control::read_desk_file(needed(control::desk_file("twin"))))) {
+    port_ = static_cast<std::uint16_t>(std::stoi(address_.url.substr(address_.url.rfind(':') + 1)));
+  }
+
+  void change(bool dark) {
+    const auto body = fmt::format(R"({{"set":["light.keep_out{}{}"]}})", dark ? "=" : "",
+                                  dark ? kEverywhere : "");
+    const auto begin_ns = now_ns();
+    const auto answer = test::ask(port_, "POST", "/api/set", as_owner(), body);
+    if (answer.status != 200) give_up("the page refuses a change: " + answer.body);
+    answers_ms_.push_back(ns_to_ms(now_ns() - begin_ns));
+  }
+  /// How long the page took to answer the changes, which it does when they are made, ms.
+  const std::vector<double>& answers_ms() const { return answers_ms_; }
+
+  /// Opens a stream of the page.
+  std::unique_ptr<test::Wire> open(const char* path) const {
+    auto wire = std::make_unique<test::Wire>(port_);
+    wire->send(test::request_text(port_, "GET", path, as_owner()));
+    return wire;
+  }
+
+ private:
+  test::HttpHeaders as_owner() const {
+    return {{"Authorization", "Bearer " + address_.tokens.back()}};
+  }
+
+  control::DeskAddress address_;
+  std::uint16_t port_ = 0;
+  std::vector<double> answers_ms_;
+};
+
+/// The number of an image in a stream of pictures; of the last one that has come, beyond `from`.
+std::optional<std::uint64_t> newest_image(const std::string& stream, std::size_t from) {
+  constexpr std::string_view kId = "\"id\":";
+  const auto at = stream.rfind(kId);
+  if (at == stream.npos || at < from) return std::nullopt;
+  const auto end = stream.find_first_of(",}", at);
+  if (end == stream.npos) return std::nullopt;
+  return std::stoull(stream.substr(at + kId.size(), end - at - kId.size()));
+}
+
+/// When the images of the camera were taken, as they come.
+class Origins {
+ public:
+  std::optional<std::int64_t> of(std::uint64_t image) {
+    const std::lock_guard lock(mutex_);
+    const auto found = origins_.find(image);
+    return found == origins_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  void read(const std::stop_token& stop) {
+    auto frames = needed(client::open_stream<msg::CameraFrame>("twin", "camera.frames"));
+    while (!stop.stop_requested()) {
+      const auto frame = frames.next(Deadline::in(50ms));
+      if (!frame) continue;
+      const std::lock_guard lock(mutex_);
+      origins_[(*frame)->header.frame_id] = (*frame)->header.origin_ns;
+    }
+  }
+
+  std::mutex mutex_;
+  std::map<std::uint64_t, std::int64_t> origins_;
+  std::jthread thread_{[this](const std::stop_token& stop) { read(stop); }};
+};
+
+/// How old the pictures on a page are when they come, ms; the page is open for some time.
+std::vector<double> picture_ages_ms(test::Wire& pictures, std::chrono::seconds span) {
+  Origins origins;
+  std::vector<double> ages_ms;
+  std::size_t seen = 0;
+  for (const auto until = Deadline::in(span); !until.passed();) {
+    const auto& stream = pictures.receive("\"width\":", seen, 1s);
+    const auto image = newest_image(stream, seen);
+    const auto came_ns = now_ns();
+    seen = stream.size();
+    if (!image) continue;
+    if (const auto origin = origins.of(*image)) ages_ms.push_back(ns_to_ms(came_ns - *origin));
+  }
+  return ages_ms;
+}
+
 /// The processor time that a process has used, s.
 double busy_seconds(pid_t pid) {
   std::ifstream stat(fmt::format("/proc/{}/stat", pid));
@@ -124,6 +218,23 @@ void note(std::vector<Goal>& goals, const char* way, const std::vector<double>& 
       {fmt::format("setting to frame, {}, p99", way), percentile(times_ms, 0.99), most_ms, "ms"});
 }
 
+/// What a page that is open costs, and how old its picture is.
+void watch_a_page(const Page& page, pid_t pid, std::vector<Goal>& goals) {
+  const auto events = page.open("/api/events"), pictures = page.open("/api/picture");
+  events->receive("event: values");
+  pictures->receive("\"id\":");
+  const double before_s = busy_seconds(pid);
+  const auto begin_ns = now_ns();
+  const auto ages_ms = picture_ages_ms(*pictures, 10s);
+  const double share = (busy_seconds(pid) - before_s) / ns_to_seconds(now_ns() - begin_ns);
+  fmt::print(
+      "a page: {:.1f} % of one core; its picture {:.1f} Hz, p50 {:.1f} ms, p99 {:.1f} ms old\n",
+      100 * share, static_cast<double>(ages_ms.size()) / 10, median(ages_ms),
+      percentile(ages_ms, 0.99));
+  goals.push_back({"desk with a page, of one core", 100 * share, 5, "%"});
+  goals.push_back({"picture on the page, age, p99", percentile(ages_ms, 0.99), 100, "ms"});
+}
+
 int run(const char* goals_file) {
   const RigFolder folder;
   std::vector<Goal> goals;
@@ -142,6 +253,11 @@ int run(const char* goals_file) {
   });
   note(goals, "by OSC", by_osc, kTwoRefreshes_ms + 5);
 
+  Page page;
+  note(goals, "by the page", times_to_light_ms([&](bool dark) { page.change(dark); }), 20);
+  fmt::print("a change by the page is made: p50 {:.1f} ms, p99 {:.1f} ms after the click\n",
+             median(page.answers_ms()), percentile(page.answers_ms(), 0.99));
+
   const auto pid = rig.pid_of("desk");
   const double before_s = busy_seconds(pid);
   const auto begin_ns = now_ns();
@@ -149,6 +265,7 @@ int run(const char* goals_file) {
   const double share = (busy_seconds(pid) - before_s) / ns_to_seconds(now_ns() - begin_ns);
   fmt::print("the desk without a page: {:.1f} % of one core\n", 100 * share);
   goals.push_back({"desk without a page, of one core", 100 * share, 1, "%"});
+  watch_a_page(page, pid, goals);
   print_goals(goals);
   return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
 }

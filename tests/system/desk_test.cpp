@@ -89,6 +89,32 @@ TEST_F(RigWithDesk, TheDeskServesItsPageAndMayDie) {
       << "a page that is open goes on";
 }
 
+TEST_F(RigWithDesk, OtherComputersGetAnAddressAndACodeIfTheRigFileSaysSo) {
+  {
+    const auto rig = up();
+    wait_until_light();
+    const auto refused = handcast({"desk", "--lan"});
+    EXPECT_NE(refused.exit_code, 0);
+    EXPECT_THAT(refused.log, HasSubstr("desk.page.lan = \"0.0.0.0:8481\""));
+    EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  }
+  const auto rig = up({"--set", "desk.page.lan=127.0.0.1:0"});
+  wait_until_light();
+  Outcome answer;
+  EXPECT_TRUE(eventually([&] {
+    answer = handcast({"desk", "--lan", "--for", "operator"});
+    return answer.exit_code == 0;
+  })) << answer.log;
+  const auto first = answer.output;
+  EXPECT_THAT(first, testing::StartsWith("https://127.0.0.1:"));
+  EXPECT_THAT(first,
+              testing::ContainsRegex("code [0-9]{4} [0-9]{4}: makes a browser the operator"));
+  EXPECT_THAT(first, testing::ContainsRegex("\n([0-9A-F]{2}:){9}[0-9A-F]{2}\n"));
+  const auto second = handcast({"desk", "--lan", "--for", "operator"}).output;
+  EXPECT_NE(first, second) << "another code";
+  EXPECT_EQ(last_line(first), last_line(second)) << "the same certificate";
+}
+
 TEST_F(RigWithDesk, BlackoutAndMasterAreOneWord) {
   const auto rig = up();
   wait_until_light();

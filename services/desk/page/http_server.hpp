@@ -18,6 +18,8 @@ struct HttpRequest {
   std::map<std::string, std::string> headers;  ///< by their names in lower case
   std::string body;                            ///< at most HttpLimits::body_bytes
   std::string peer;                            ///< the address of the client
+  std::string local;          ///< the address and port of this computer that it came to
+  bool is_encrypted = false;  ///< the server has a certificate
 
   /// The value of a header; "" if there is none.
   std::string header(const std::string& name) const {
@@ -53,6 +55,11 @@ struct HttpLimits {
   unsigned stall_s = 10;                    ///< a client that takes nothing for so long is left
 };
 
+/// PEM texts of a server that encrypts; empty: it does not.
+struct TlsKeys {
+  std::string certificate, key;
+};
+
 /// Serves HTTP/1.1 at one address, one request a connection, each in a thread of its own at low
 /// priority: where cores are short, the page is late rather than the light.
 class HttpServer {
@@ -60,9 +67,11 @@ class HttpServer {
   /// Any thread, several at once.
   using Handler = std::function<HttpAnswer(const HttpRequest&)>;
 
-  /// `port` 0: any that is free. Errors: unavailable (the port is taken, or no threads).
+  /// `port` 0: any that is free. Errors: bad_config (not an address), unavailable (the port is
+  /// taken, or no threads).
   static Result<std::unique_ptr<HttpServer>> open(const std::string& address, std::uint16_t port,
-                                                  Handler handler, HttpLimits limits = {});
+                                                  Handler handler, HttpLimits limits = {},
+                                                  TlsKeys tls = {});
   /// Closes all connections and waits for the handlers.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr std::int64_t kPeriod_ns = 60'000'000;
 constexpr std::int64_t kWanted_ns = 2'000'000'000;
-constexpr int kQuality = 70, kMostWidth_px = 800, kMostLight_px = 400;
+constexpr int kQuality = 70, kMostWidth_px = 640, kMostLight_px = 400;
 constexpr std::array kSides{"left", "right"};
 
 /// libjpeg ends the process at a picture that cannot be one.

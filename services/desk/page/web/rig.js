@@ -100,12 +100,25 @@ function showStages(stages) {
     : el('table', {}, el('tr', {}, el('th', {scope: 'col'}, 'stage'), el('th', {}, ''), el('th', {scope: 'col'}, 'p50 ms'), el('th', {scope: 'col'}, 'p99 ms')), ...rows));
 }
 
+const kRungsOver = 20;   // tellings of the status, two a second
+const rungCounts = [];
+/** The shares of the corrections that the gate has chosen lately, the most frequent first. */
+function rungShares(counts) {
+  rungCounts.push(counts);
+  if (rungCounts.length > kRungsOver) rungCounts.shift();
+  const grown = Object.entries(counts).map(([rung, count]) => [rung, count - (rungCounts[0][rung] ?? 0)]).filter(([, count]) => count > 0);
+  const all = grown.reduce((sum, [, count]) => sum + count, 0);
+  return grown.sort((a, b) => b[1] - a[1]).map(([rung, count]) => `${rung} ${Math.round(100 * count / all)} %`).join(', ');
+}
+
 function showFacts(status) {
   const facts = [];
   const sum = (counts) => Object.values(counts ?? {}).reduce((all, count) => all + count, 0);
   if (status.light) facts.push(['missed refreshes', String(status.light.missed_refreshes ?? 0)]);
   if (status.lost_images) facts.push(['lost images', String(sum(status.lost_images))]);
   if (status.tracker_faults) facts.push(['faults of the tracker', String(sum(status.tracker_faults))]);
+  const rungs = rungShares(status.rungs ?? {});
+  if (rungs) facts.push(['corrections that the gate chose', rungs]);
   const drift = status.tracker_drift;
   if (drift) facts.push(['tracker against calibration', `${figure(drift.across_mm)} mm, ${figure(drift.turn_deg)}°${drift.moved ? ': moved' : ''}`]);
   $('facts').replaceChildren(...facts.map(([name, value]) => el('div', {}, el('strong', {}, value), name)));
@@ -119,10 +132,11 @@ export function showAges(ages) {
 /** What is on the hands, and the looks. */
 export class Looks {
   constructor(looks, settings) {
-    this.buttons = looks.map((look) => {
-      const button = el('button', {title: look}, look);
+    this.buttons = looks.map(({name, picture}) => {
+      const image = picture ? el('img', {src: `/api/look/${name}`, alt: '', width: 96, height: 60, loading: 'lazy', decoding: 'async'}) : null;
+      const button = el('button', {title: name}, image, el('span', {}, name));
       button.disabled = !settings.mayChange;
-      button.addEventListener('click', () => this.show(look));
+      button.addEventListener('click', () => this.show(name));
       return button;
     });
     $('look-list').replaceChildren(...this.buttons);
@@ -155,6 +169,7 @@ export class Cues {
   constructor(mayChange) {
     this.mayChange = mayChange;
     this.names = null;
+    this.about = [];
     this.buttons = [];
     for (const what of ['go', 'back', 'hold']) {
       $(`cue-${what}`).addEventListener('click', () => post('/api/cue', {do: what}));
@@ -163,25 +178,40 @@ export class Cues {
   }
 
   take(cues) {
+    this.newest = cues;
     const names = cues?.names ?? [];
     const current = cues?.current ?? -1, next = cues?.next ?? 0;
     for (const what of ['go', 'back', 'hold']) $(`cue-${what}`).disabled = !this.mayChange || names.length === 0;
     $('cue-go').disabled ||= next >= names.length;
     $('cue-back').disabled ||= current < 1;
     setText($('cue-go'), next < names.length ? `Go: ${names[next]}` : 'Go');
-    setText($('cue-text'), cues === null ? 'no list: see desk.cues' : current < 0 ? `${names.length} cues` : `${current + 1} of ${names.length}`);
+    $('no-cues').hidden = cues !== null;
+    setText($('cue-text'), cues === null ? 'no list' : current < 0 ? `${names.length} cues` : `${current + 1} of ${names.length}`);
     $('cue-hold').setAttribute('aria-pressed', String(cues?.held ?? false));
     if (JSON.stringify(names) !== this.names) this.list(names);
     this.buttons.forEach((button, i) => {
       button.setAttribute('aria-current', String(i === current));
-      button.style.setProperty('--faded', i === current ? `${100 * cues.faded}%` : '0%');
+      button.classList.toggle('next', i === next);
+      button.style.setProperty('--faded', i === current && cues.faded < 1 ? `${100 * cues.faded}%` : '0%');
     });
+  }
+
+  hasKey(key) { return this.mayChange && this.about.some(({on}) => on.split(', ').includes(`key ${key}`)); }
+
+  /** What starts the cues, and what they do. */
+  takeList(about) {
+    this.about = about;
+    this.names = null;
+    if (this.newest !== undefined) this.take(this.newest);
   }
 
   list(names) {
     this.names = JSON.stringify(names);
     this.buttons = names.map((name, index) => {
-      const button = el('button', {}, el('i', {}, String(index + 1)), name);
+      const {on = '', does = ''} = this.about[index] ?? {};
+      const button = el('button', {}, el('i', {}, String(index + 1)),
+        el('span', {className: 'cue'}, el('span', {className: 'name'}, name), on ? el('span', {className: 'on'}, on) : null,
+          does ? el('span', {className: 'does'}, does) : null), el('span', {className: 'mark'}));
       button.disabled = !this.mayChange;
       button.addEventListener('click', () => post('/api/cue', {do: 'jump', cue: String(index + 1)}));
       return button;

@@ -31,6 +31,7 @@ class Wire {
   }
 
   bool is_open() const { return is_open_; }
+  int fd() const { return fd_.get(); }
   /// False: the other end has closed.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
@@ -42,7 +43,7 @@ class Wire {
   }
   /// Receives until the other end closes, `text` has come, or the time is over.
   const std::string& receive(std::string_view text = "", std::size_t from = 0,
-                             std::chrono::seconds patience = std::chrono::seconds(20)) {
+                             std::chrono::nanoseconds patience = std::chrono::seconds(20)) {
     const auto until = Deadline::in(patience);
     while (!until.passed() && (text.empty() || received_.find(text, from) == std::string::npos)) {
       pollfd readable{fd_.get(), POLLIN, 0};
