@@ -39,6 +39,8 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "content.left",
                                        "content.right",
                                        "desk.cues",
+                                       "desk.gestures",
+                                       "projector.lamp.password_file",
                                        "twin.motion",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};

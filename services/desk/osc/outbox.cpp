@@ -21,11 +21,15 @@ std::string write_hand(const Scene& scene, std::size_t side) {
   };
   std::vector<std::string> messages{MessageWriter(address("there")).add(gesture.is_there).packet()};
   if (!gesture.is_there) return write_bundle(messages);
-  const std::array<std::pair<std::string_view, float>, 5> amounts{{{"pinch", gesture.pinch},
-                                                                   {"spread", gesture.spread},
-                                                                   {"fist", gesture.fist},
-                                                                   {"palm_up", gesture.palm_up},
-                                                                   {"speed", gesture.speed_m_s}}};
+  const std::array<std::pair<std::string_view, float>, 8> amounts{
+      {{"pinch", gesture.pinch},
+       {"spread", gesture.spread},
+       {"fist", gesture.fist},
+       {"open", 1 - gesture.fist},
+       {"point", static_cast<float>(gesture.is_pointing)},
+       {"palm_up", gesture.palm_up},
+       {"speed", gesture.speed_m_s},
+       {"touch", static_cast<float>(gesture.touches_other)}}};
   for (const auto& [name, amount] : amounts)
     messages.push_back(MessageWriter(address(name)).add(amount).packet());
   MessageWriter joints(address("joints")), places(address("uv"));
