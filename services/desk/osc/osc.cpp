@@ -10,6 +10,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/desk/osc/description.hpp"
+#include "services/desk/osc/figures.hpp"
 #include "services/desk/osc/inbox.hpp"
 #include "services/desk/osc/outbox.hpp"
 #include "services/desk/osc/query_server.hpp"
@@ -127,10 +128,14 @@ class OscSurface final : public Surface {
              Sockets sockets)
       : panel_(panel),
         addresses_(panel.controls()),
-        outbox_(addresses_, rig.desk.osc.rate_hz),
+        outbox_(rig.desk.osc.rate_hz),
         tuio_(camera),
         sockets_(std::move(sockets)) {
-    for (const auto& socket : sockets_.send) send_.push_back(socket.get());
+    for (const auto& socket : sockets_.send) {
+      send_.push_back(socket.get());
+      tellers_.emplace_back(addresses_, peer_of(socket));
+    }
+    if (!send_.empty()) figures_ = std::make_unique<FigureFeed>(rig.name);
     for (const auto& socket : sockets_.tuio) send_tuio_.push_back(socket.get());
     if (sockets_.listen)
       receiver_ = std::make_unique<Receiver>(rig, addresses_, panel, cues,
@@ -138,17 +143,30 @@ class OscSurface final : public Surface {
   }
 
   void turn(const Scene& scene) override {
-    if (receiver_ && receiver_->takes_refresh()) outbox_.refresh();
-    if (!send_.empty()) send_all(outbox_.packets(scene, *panel_.values()), send_);
+    const bool is_refresh = receiver_ && receiver_->takes_refresh();
+    if (!send_.empty()) send_all(packets(scene), send_);
+    for (std::size_t i = 0; i < send_.size(); ++i) {
+      if (is_refresh) tellers_[i].refresh();
+      send_all(tellers_[i].packets(*panel_.values(), scene.now_ns), {&send_[i], 1});
+    }
     if (send_tuio_.empty()) return;
     if (auto bundle = tuio_.bundle(scene); !bundle.empty())
       send_all({std::move(bundle)}, send_tuio_);
   }
 
  private:
+  /// What all receivers are told.
+  std::vector<std::string> packets(const Scene& scene) {
+    auto packets = outbox_.packets(scene);
+    if (auto figures = figures_->take(); !figures.empty()) packets.push_back(std::move(figures));
+    return packets;
+  }
+
   Panel& panel_;
   Addresses addresses_;
   Outbox outbox_;
+  std::vector<ValueTeller> tellers_;  ///< by receiver
+  std::unique_ptr<FigureFeed> figures_;
   Tuio tuio_;
   Sockets sockets_;
   std::vector<int> send_, send_tuio_;

@@ -98,6 +98,17 @@ Result<UniqueFd> connect_socket(std::string_view address, std::string_view setti
   return socket;
 }
 
+std::string peer_of(const UniqueFd& socket) {
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  std::array<char, 64> host{};
+  auto* const generic = reinterpret_cast<sockaddr*>(&peer);
+  if (::getpeername(socket.get(), generic, &size) != 0 ||
+      ::getnameinfo(generic, size, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0)
+    return "";
+  return host.data();
+}
+
 const std::vector<Datagram>& DatagramReader::read(const UniqueFd& socket) {
   std::array<mmsghdr, kBatch> headers{};
   std::array<iovec, kBatch> places{};

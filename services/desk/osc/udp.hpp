@@ -22,6 +22,8 @@ Result<UniqueFd> bind_socket(std::string_view address, Transport transport,
                              std::string_view setting, int port = -1);
 /// The port that a socket is bound to.
 int port_of(const UniqueFd& socket);
+/// The host at the other end of a connected socket: "10.0.0.7"; "" if it has none.
+std::string peer_of(const UniqueFd& socket);
 /// A UDP socket that sends to an address. Errors: as bind_socket().
 Result<UniqueFd> connect_socket(std::string_view address, std::string_view setting);
 

@@ -17,7 +17,7 @@
 #include <unordered_map>
 
 #include "ipc/base/clock.hpp"
-#include "services/desk/page/low_priority.hpp"
+#include "services/desk/base/low_priority.hpp"
 
 namespace handcast::desk {
 namespace {

@@ -14,7 +14,7 @@
 #include "ipc/msg/content_state.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "services/desk/page/json_text.hpp"
-#include "services/desk/page/low_priority.hpp"
+#include "services/desk/base/low_priority.hpp"
 
 namespace handcast::desk {
 namespace {
