@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "services/tools/doctor/lamp.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/desk/lamp/pjlink_projector.hpp"
 
@@ -182,6 +183,21 @@ TEST(PjlinkPlace, ThePasswordIsInAFileOfThisUserOrInTheEnvironment) {
   EXPECT_EQ(place_of({"a", "", ""})->password, "from outside");
   ::unsetenv("HANDCAST_PJLINK_PASSWORD");
   EXPECT_EQ(place_of({"a", "", ""})->password, "");
+}
+
+TEST_F(Pjlink, TheDoctorAsksTheLamp) {
+  config::Rig rig;
+  EXPECT_TRUE(doctor::examine_lamp(rig).empty());
+  rig.projector.lamp.pjlink = "127.0.0.1:" + projector.place.port;
+  const auto grade = [&] { return doctor::examine_lamp(rig).at(0).grade; };
+  EXPECT_EQ(grade(), doctor::Grade::advice) << "it is off";
+  projector.set("POWR", "1");
+  EXPECT_EQ(grade(), doctor::Grade::good);
+  projector.set("ERST", "010000");
+  EXPECT_EQ(grade(), doctor::Grade::fault);
+  EXPECT_THAT(doctor::examine_lamp(rig)[0].sentence, HasSubstr("lamp: warning"));
+  projector.greet("close");
+  EXPECT_EQ(grade(), doctor::Grade::fault);
 }
 
 }  // namespace
