@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <sys/socket.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -48,6 +50,7 @@ class DatagramReader {
  private:
   std::vector<std::array<std::uint8_t, kMostDatagram>> memory_{kBatch};
   std::array<std::array<char, 64>, kBatch> names_{};
+  std::array<sockaddr_storage, kBatch> senders_{};  ///< those that names_ are of
   std::vector<Datagram> datagrams_;
 };
 
