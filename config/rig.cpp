@@ -41,6 +41,7 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "desk.cues",
                                        "desk.gestures",
                                        "projector.lamp.password_file",
+                                       "desk.page.recordings",
                                        "twin.motion",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};

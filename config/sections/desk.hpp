@@ -49,6 +49,8 @@ void describe(Visitor& visitor, DeskMidi& midi) {
 /// [desk.page]
 struct DeskPage {
   std::string listen = "127.0.0.1:8480";
+  std::string lan;
+  std::string recordings;
 };
 
 template <class Visitor>
@@ -56,6 +58,14 @@ void describe(Visitor& visitor, DeskPage& page) {
   visitor.field("listen", page.listen,
                 "Where the page is served, on this computer; if the port is taken, at a free one "
                 "(`handcast desk` prints the address). Empty: nowhere.");
+  visitor.field("lan", page.lan,
+                "Where the page is also served to phones and other computers, encrypted, e.g. "
+                "\"0.0.0.0:8481\": to all that reach this one (`handcast desk --lan` prints the "
+                "address and a code). Empty: nowhere.");
+  visitor.field(
+      "recordings", page.recordings,
+      "The folder of the recordings that the page lists and makes. Empty: recordings/ beside "
+      "the rig file.");
 }
 
 /// [desk]

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ipc/control/desk_address.hpp"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,9 +13,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <vector>
 
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/rig_name.hpp"
@@ -78,6 +81,21 @@ std::string name_of(std::string_view rig) {
   return name + std::string(rig) + ".desk";
 }
 
+std::string text_at(const nlohmann::json& object, const char* name) {
+  const auto found = object.find(name);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+std::optional<LanAddress> lan_in(const nlohmann::json& desk) {
+  const auto lan = desk.find("lan");
+  if (lan == desk.end() || !lan->is_object()) return std::nullopt;
+  const auto port = lan->find("port");
+  return LanAddress{text_at(*lan, "address"),
+                    port != lan->end() && port->is_number_unsigned() ? port->get<std::uint16_t>()
+                                                                     : std::uint16_t{0},
+                    text_at(*lan, "fingerprint"), text_at(*lan, "fault")};
+}
+
 }  // namespace
 
 std::array<std::string, kRoles> new_tokens() {
@@ -114,6 +132,7 @@ Result<DeskAddress> read_desk_file(const fs::path& file) {
     is_whole = token != json.end() && token->is_string() && is_token(*token);
     if (is_whole) address.tokens[role] = *token;
   }
+  if (is_whole) address.lan = lan_in(json);
   if (!is_whole)
     return fail(Errc::bad_data, fmt::format("{} is damaged; remove it, and `handcast restart desk` "
                                             "writes another",
@@ -121,16 +140,43 @@ Result<DeskAddress> read_desk_file(const fs::path& file) {
   return address;
 }
 
-Result<void> write_desk_file(const fs::path& file, const DeskAddress& address) {
-  // It is there with its permissions before the tokens are.
+Result<void> write_private(const fs::path& file, std::string_view text) {
+  // It is there with its permissions before the text is.
   const UniqueFd fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   if (!fd || ::fchmod(fd.get(), 0600) != 0)
     return fail(Errc::unavailable,
                 fmt::format("{} cannot be written: {}", file.string(), std::strerror(errno)));
+  return write_whole(file, text, Durable::no);
+}
+
+Result<void> write_desk_file(const fs::path& file, const DeskAddress& address) {
   nlohmann::json json{{"url", address.url}};
   for (std::size_t role = 0; role < kRoles; ++role)
     json[std::string(kRoleNames[role])] = address.tokens[role];
-  return write_whole(file, json.dump(2) + "\n", Durable::no);
+  if (const auto& lan = address.lan)
+    json["lan"] = {{"address", lan->address},
+                   {"port", lan->port},
+                   {"fingerprint", lan->fingerprint},
+                   {"fault", lan->fault}};
+  return write_private(file,
+                       json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+std::vector<std::string> own_addresses() {
+  std::vector<std::string> all;
+  ifaddrs* first = nullptr;
+  if (::getifaddrs(&first) != 0) return all;
+  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> owner(first, ::freeifaddrs);
+  for (const auto* each = first; each; each = each->ifa_next) {
+    const bool is_reached =
+        (each->ifa_flags & IFF_UP) != 0 && (each->ifa_flags & IFF_LOOPBACK) == 0;
+    if (!is_reached || !each->ifa_addr || each->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN] = "";
+    ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr, text,
+                sizeof text);
+    all.emplace_back(text);
+  }
+  return all;
 }
 
 }  // namespace handcast::control

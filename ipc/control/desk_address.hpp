@@ -3,8 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ipc/base/result.hpp"
 
@@ -23,10 +25,19 @@ inline constexpr std::size_t kRoles = 3;  ///< number of roles
 /// Their names, by Role.
 inline constexpr std::array<std::string_view, kRoles> kRoleNames{"viewer", "operator", "owner"};
 
+/// Where other computers reach the page, encrypted.
+struct LanAddress {
+  std::string address;  ///< "192.168.1.5", or "0.0.0.0": each address of this computer
+  std::uint16_t port = 0;
+  std::string fingerprint;  ///< the first bytes of the SHA-256 of the certificate, "AB:CD:…"
+  std::string fault;        ///< why it cannot be reached; empty: it can
+};
+
 /// The address of the page, and what tells who may do what there.
 struct DeskAddress {
   std::string url;                         ///< "http://127.0.0.1:8480"
   std::array<std::string, kRoles> tokens;  ///< by Role; 64 hexadecimal digits each
+  std::optional<LanAddress> lan{};         ///< empty: no other computer reaches it
 
   /// The address with the token behind a #, which a browser keeps to itself.
   std::string url_for(Role role) const {
@@ -46,5 +57,10 @@ Result<std::filesystem::path> desk_file(std::string_view rig);
 Result<DeskAddress> read_desk_file(const std::filesystem::path& file);
 /// Errors: unavailable.
 Result<void> write_desk_file(const std::filesystem::path& file, const DeskAddress& address);
+
+/// Writes a file that only this user can read. Errors: unavailable.
+Result<void> write_private(const std::filesystem::path& file, std::string_view text);
+/// The addresses (IPv4) by which other computers may reach this one.
+std::vector<std::string> own_addresses();
 
 }  // namespace handcast::control

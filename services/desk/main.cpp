@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,7 +36,8 @@ static desk::Gestures gestures_of(const config::Rig& rig, const calib::Calibrati
 
 /// Everything that people work the rig with. Cues come first: the others work them.
 static std::vector<std::unique_ptr<desk::Surface>> open_surfaces(
-    const config::Rig& rig, const calib::Calibration& calibration, desk::Panel& panel) {
+    const config::Rig& rig, const std::filesystem::path& rig_file,
+    const calib::Calibration& calibration, desk::Panel& panel) {
   std::vector<std::unique_ptr<desk::Surface>> surfaces;
   const auto add = [&](std::unique_ptr<desk::Surface> surface) {
     if (surface) surfaces.push_back(std::move(surface));
@@ -47,8 +49,10 @@ static std::vector<std::unique_ptr<desk::Surface>> open_surfaces(
   add(must(desk::open_knobs(rig, panel)));
   add(must(desk::open_lamp(rig, panel)));
   add(must(desk::open_osc(rig, calibration.camera, panel, deck)));
-  add(must(desk::open_midi(rig, remembered / (rig.name + ".midi.toml"), panel, deck)));
-  add(must(desk::open_page(rig, panel, deck)));
+  auto midi = must(desk::open_midi(rig, remembered / (rig.name + ".midi.toml"), panel, deck));
+  desk::MidiLearner* const learner = midi.get();
+  add(std::move(midi));
+  add(must(desk::open_page(rig, {panel, deck, learner, rig_file})));
   return surfaces;
 }
 
@@ -59,8 +63,10 @@ static void run_desk(service::Context& context) {
   const auto& rig = context.filed();
   auto gestures = gestures_of(rig, context.calibration());
   context.stand_by();
-  desk::RigPanel panel(must(config::LiveBoard::open(rig.name)));
-  auto surfaces = open_surfaces(rig, context.calibration(), panel);
+  auto board = must(config::LiveBoard::open(rig.name));
+  const auto rig_file = board.file();
+  desk::RigPanel panel(std::move(board));
+  auto surfaces = open_surfaces(rig, rig_file, context.calibration(), panel);
   auto poses = must(context.reader<msg::HandPoses>("pose.hands"));
   context.ready();
   for (std::int64_t due_ns = now_ns(); context.running();) {

@@ -57,10 +57,12 @@ class Attacker {
 };
 using Attackers = std::vector<std::unique_ptr<Attacker>>;
 
-/// "/light/master ,f 1".
-std::string osc_message() {
+/// "/light/master ,f 1", the first one; each later one a little less.
+std::string osc_message(unsigned number) {
   std::string bytes("/light/master\0\0\0,f\0\0", 20);
-  return bytes + std::string("\x3f\x80\0\0", 4);
+  const std::uint32_t value = 0x3f800000 - number % 4096;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 255);
+  return bytes;
 }
 
 /// Sends messages to a port in batches.
@@ -70,12 +72,15 @@ void flood(std::uint16_t port, std::atomic<std::uint64_t>& sent, const std::atom
   to.sin_family = AF_INET;
   to.sin_port = htons(port);
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  auto message = osc_message();
-  iovec part{message.data(), message.size()};
+  std::string message;
+  iovec part{};
   std::array<mmsghdr, kBatch> batch{};
   for (auto& each : batch) each.msg_hdr = {&to, sizeof to, &part, 1, nullptr, 0, 0};
+  unsigned number = 0;
   for (auto due_ns = now_ns(); !is_over; due_ns += 1'000'000'000ll * kBatch / kMessages_hz) {
     sleep_until_ns(due_ns);
+    message = osc_message(++number);
+    part = {message.data(), message.size()};
     const int count = ::sendmmsg(socket.get(), batch.data(), kBatch, MSG_DONTWAIT);
     if (count > 0) sent += static_cast<std::uint64_t>(count);
   }

@@ -22,6 +22,8 @@ namespace osc {
 namespace {
 
 constexpr std::int64_t kPause_ns = 4'000'000;  ///< between two reads of what came in
+/// Between two changes: each makes every process of the rig read its settings again.
+constexpr std::int64_t kChangePause_ns = 16'000'000;
 /// Reads of DatagramReader::kBatch at one time: 32,000 messages a second, more than any controller
 /// sends. The rest of a flood is lost in the socket, which costs the rig no time.
 constexpr std::size_t kMostReads = 4;
@@ -72,7 +74,10 @@ class Receiver {
         is_query_waiting_ = server_.turn(now.mono_ns);
         next_read_ns_ = now.mono_ns + kPause_ns;
       }
-      if (inbox_.has_work()) inbox_.apply(panel_, cues_, now);
+      if (inbox_.has_work() && now.mono_ns >= next_change_ns_) {
+        inbox_.apply(panel_, cues_, now);
+        next_change_ns_ = now.mono_ns + kChangePause_ns;
+      }
       if (inbox_.takes_refresh()) is_refresh_.store(true);
     }
   }
@@ -83,6 +88,7 @@ class Receiver {
     const bool pauses = now < next_read_ns_;
     auto until_ns = pauses ? next_read_ns_ : now + (is_query_waiting_ ? 0 : kLongestWait_ns);
     if (const auto due_ns = inbox_.next_due_ns()) until_ns = std::min(until_ns, *due_ns);
+    if (inbox_.has_work()) until_ns = std::min(until_ns, next_change_ns_);
     waits_.assign(1, {stop_.get(), POLLIN, 0});
     if (!pauses) {
       waits_.push_back({socket_.get(), POLLIN, 0});
@@ -116,7 +122,7 @@ class Receiver {
   Inbox inbox_;
   Host host_;
   QueryServer server_;
-  std::int64_t next_read_ns_ = 0;
+  std::int64_t next_read_ns_ = 0, next_change_ns_ = 0;
   bool is_query_waiting_ = false;
   std::vector<pollfd> waits_;
   std::atomic<bool> is_stopping_ = false, is_refresh_ = false;

@@ -2,20 +2,13 @@
 #include "services/desk/page/access.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
 #include <charconv>
 
 namespace handcast::desk {
 namespace {
-
-/// Takes as long for every token of the same length.
-bool is_same(std::string_view a, std::string_view b) {
-  if (a.size() != b.size()) return false;
-  unsigned difference = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-    difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
-  return difference == 0;
-}
 
 /// The value of a cookie; "" if there is none.
 std::string_view cookie_in(std::string_view cookies, std::string_view name) {
@@ -31,6 +24,17 @@ std::string_view cookie_in(std::string_view cookies, std::string_view name) {
 }
 
 constexpr std::string_view kBearer = "Bearer ";
+
+/// True if a request names this computer: the address that it came to, or its name. Others were
+/// made to point here.
+bool is_own_name(const std::string& host, const HttpRequest& request) {
+  if (host == request.local) return true;
+  const auto port = request.local.substr(request.local.rfind(':'));
+  if (!request.is_encrypted) return host == "localhost" + port;
+  std::array<char, 256> name{};
+  if (::gethostname(name.data(), name.size() - 1) != 0) return false;
+  return host == name.data() + port || host == name.data() + (".local" + port);
+}
 
 }  // namespace
 
@@ -55,24 +59,28 @@ std::uint16_t Access::last_port() const {
   return port;
 }
 
-Result<void> Access::announce(const std::string& address, std::uint16_t port) {
+Result<void> Access::announce(const std::string& address, std::uint16_t port,
+                              std::optional<control::LanAddress> lan) {
   const std::lock_guard lock(mutex_);
-  host_ = fmt::format("{}:{}", address, port);
-  local_host_ = fmt::format("localhost:{}", port);
-  address_.url = "http://" + host_;
+  address_.url = fmt::format("http://{}:{}", address, port);
+  address_.lan = std::move(lan);
   auto written = control::write_desk_file(file_, address_);
   struct stat status {};
   if (written && ::stat(file_.c_str(), &status) == 0) written_ = status.st_mtim;
   return written;
 }
 
+std::filesystem::path Access::beside(const char* extension) const {
+  auto file = file_;
+  return file.replace_extension(extension);
+}
+
 std::optional<std::string> Access::fault_of(const HttpRequest& request) const {
-  const std::lock_guard lock(mutex_);
   const auto host = request.header("host"), origin = request.header("origin"),
              site = request.header("sec-fetch-site");
-  if (host != host_ && host != local_host_)
-    return fmt::format("This page is served at {} only.", host_);
-  if (!origin.empty() && origin != "http://" + host)
+  if (!is_own_name(host, request))
+    return fmt::format("This page is served at {} only.", request.local);
+  if (!origin.empty() && origin != (request.is_encrypted ? "https://" : "http://") + host)
     return "Pages of other sites may not use this one.";
   if (!site.empty() && site != "same-origin" && site != "none" && request.path != "/")
     return "Pages of other sites may not use this one.";
@@ -100,7 +108,7 @@ std::optional<control::Role> Access::role_of_token(std::string_view token) {
   read_again();
   std::optional<control::Role> role;
   for (std::size_t i = 0; i < control::kRoles; ++i)
-    if (is_same(token, address_.tokens[i])) role = static_cast<control::Role>(i);
+    if (is_same_secret(token, address_.tokens[i])) role = static_cast<control::Role>(i);
   return role;
 }
 
@@ -108,14 +116,27 @@ std::optional<control::Role> Access::role_of(const HttpRequest& request) {
   const auto authorization = request.header("authorization"), cookies = request.header("cookie");
   if (authorization.starts_with(kBearer))
     return role_of_token(std::string_view(authorization).substr(kBearer.size()));
-  const auto token = cookie_in(cookies, "handcast-" + rig_);
+  const auto token = cookie_in(cookies, cookie_name(request));
   return token.empty() ? std::nullopt : role_of_token(token);
 }
 
-std::string Access::cookie_of(std::string_view token) const {
+Result<std::string> Access::pair(std::string_view code) {
+  const auto role = pairings_.trade(code);
+  if (!role) return tl::make_unexpected(role.error());
+  const std::lock_guard lock(mutex_);
+  read_again();
+  return address_.tokens[static_cast<std::size_t>(*role)];
+}
+
+/// With the prefix, browsers take it from this very computer only, and send it encrypted only.
+std::string Access::cookie_name(const HttpRequest& request) const {
+  return (request.is_encrypted ? "__Host-handcast-" : "handcast-") + rig_;
+}
+
+std::string Access::cookie_of(std::string_view token, const HttpRequest& request) const {
   constexpr int kMonth_s = 30 * 86'400;
-  return fmt::format("handcast-{}={}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}", rig_, token,
-                     token.empty() ? 0 : kMonth_s);
+  return fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}{}", cookie_name(request),
+                     token, kMonth_s, request.is_encrypted ? "; Secure" : "");
 }
 
 std::uint64_t Access::generation() {

@@ -10,9 +10,32 @@
 
 #include "ipc/base/result.hpp"
 #include "ipc/control/desk_address.hpp"
+#include "ipc/control/pairing.hpp"
 #include "services/desk/page/http_server.hpp"
 
 namespace handcast::desk {
+
+/// Trades the code that `handcast desk --lan` has printed for a role, once. Any thread.
+class Pairings {
+ public:
+  /// After so many wrong codes the right one is no longer valid either: whoever guesses has one
+  /// chance in twenty million.
+  static constexpr int kMostWrong = 5;
+
+  explicit Pairings(std::filesystem::path file) : file_(std::move(file)) {}
+
+  /// Errors: bad_data (a wrong code), unavailable (none is valid).
+  Result<control::Role> trade(std::string_view code);
+
+ private:
+  std::filesystem::path file_;
+  std::mutex mutex_;
+  std::string guessed_;  ///< the code that the wrong ones were tried for
+  int wrong_ = 0;
+};
+
+/// Takes as long for every text of the same length.
+bool is_same_secret(std::string_view a, std::string_view b);
 
 /// Who may do what at the page. Any thread.
 class Access {
@@ -22,8 +45,12 @@ class Access {
 
   /// The port of the page before this service was started again; 0: none.
   std::uint16_t last_port() const;
-  /// Writes the file, from which `handcast desk` knows the address. Errors: unavailable.
-  Result<void> announce(const std::string& address, std::uint16_t port);
+  /// Writes the file, from which `handcast desk` knows the addresses. `lan`: that for other
+  /// computers. Errors: unavailable.
+  Result<void> announce(const std::string& address, std::uint16_t port,
+                        std::optional<control::LanAddress> lan);
+  /// The file's place with another extension (".pem").
+  std::filesystem::path beside(const char* extension) const;
 
   /// Why a request is refused, whoever sends it: it names another computer (a name that was made to
   /// point here, DNS rebinding), or the page of another site sends it. Empty if it is not.
@@ -33,22 +60,25 @@ class Access {
   std::optional<control::Role> role_of(const HttpRequest& request);
   /// The role of a token; empty: it is none.
   std::optional<control::Role> role_of_token(std::string_view token);
-  /// The cookie that keeps a token, for the header Set-Cookie. An empty token: removes it.
-  std::string cookie_of(std::string_view token) const;
+  /// The token for a code that was read off this computer. Errors: those of Pairings::trade().
+  Result<std::string> pair(std::string_view code);
+  /// The cookie that keeps a token, for the header Set-Cookie of the answer to a request.
+  std::string cookie_of(std::string_view token, const HttpRequest& request) const;
   /// Increases whenever `handcast desk --renew` has written other tokens.
   std::uint64_t generation();
 
  private:
   Access(std::string rig, std::filesystem::path file)
-      : rig_(std::move(rig)), file_(std::move(file)) {}
+      : rig_(std::move(rig)), file_(std::move(file)), pairings_(control::pairing_file(file_)) {}
   void read_again();
+  std::string cookie_name(const HttpRequest& request) const;
 
   std::string rig_;
   std::filesystem::path file_;
+  Pairings pairings_;
   mutable std::mutex mutex_;
   control::DeskAddress address_;
-  std::string host_, local_host_;  ///< "127.0.0.1:8480", "localhost:8480"
-  struct timespec written_ {};     ///< when the file was
+  struct timespec written_ {};  ///< when the file was
   std::uint64_t generation_ = 0;
 };
 

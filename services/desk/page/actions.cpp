@@ -22,6 +22,9 @@ constexpr std::array kActions{
     Action{"/api/cue", Role::operator_},         Action{"/api/preset/load", Role::operator_},
     Action{"/api/preset/store", Role::owner},    Action{"/api/save", Role::owner},
     Action{"/api/service/restart", Role::owner}, Action{"/api/service/swap", Role::owner},
+    Action{"/api/midi/learn", Role::owner},      Action{"/api/midi/stop", Role::owner},
+    Action{"/api/midi/forget", Role::owner},     Action{"/api/record/start", Role::owner},
+    Action{"/api/record/stop", Role::owner},     Action{"/api/doctor", Role::owner},
 };
 constexpr std::size_t kMostAssignments = 500;
 
@@ -63,10 +66,11 @@ Result<void> cue(CueDeck* cues, const json& body, const std::string& source) {
   if (*what == "go") return cues->go(), Result<void>();
   if (*what == "back") return cues->back(), Result<void>();
   if (*what == "hold") return cues->hold(), Result<void>();
-  const auto cue = text_in(body, "cue");
+  const auto cue = text_in(body, "cue"), key = text_in(body, "key");
   if (*what == "jump" && cue) return cues->jump(*cue);
+  if (*what == "key" && key) return cues->key(*key), Result<void>();
   return fail(Errc::bad_data,
-              "A cue must be \"go\", \"back\", \"hold\", or \"jump\" to a \"cue\".");
+              "A cue must be \"go\", \"back\", \"hold\", \"jump\" to a \"cue\", or a \"key\".");
 }
 
 Result<void> preset(Panel& panel, const json& body, const std::string& source, bool stores) {
@@ -97,6 +101,26 @@ Result<void> change_service(const Worked& worked, const json& body, const std::s
   return answer ? Result<void>() : tl::make_unexpected(answer.error());
 }
 
+Result<void> midi(MidiLearner* learner, const json& body, std::string_view what) {
+  if (!learner)
+    return fail(Errc::bad_config, "The rig has no MIDI controller: see desk.midi.device.");
+  if (what == "/api/midi/stop") return learner->stop_learning(), Result<void>();
+  const auto path = text_in(body, "path");
+  if (!path) return tl::make_unexpected(path.error());
+  if (what == "/api/midi/learn") return learner->learn(*path);
+  return learner->forget(*path), Result<void>();
+}
+
+/// Starts and stops programs.
+Result<void> run_program(Programs& programs, const json& body, const std::string& source,
+                         std::string_view what) {
+  log::info("{}: {}", printable(source), what.substr(5));
+  if (what == "/api/doctor") return programs.start_doctor();
+  if (what == "/api/record/stop") return programs.stop_recording();
+  const auto name = text_in(body, "name");
+  return name ? programs.start_recording(*name) : tl::make_unexpected(name.error());
+}
+
 }  // namespace
 
 const Action* find_action(std::string_view path) {
@@ -119,6 +143,9 @@ Result<void> act(const Worked& worked, const Action& action, const std::string& 
   if (what == "/api/preset/load") return preset(panel, body, source, false);
   if (what == "/api/preset/store") return preset(panel, body, source, true);
   if (what == "/api/save") return panel.save();
+  if (what.starts_with("/api/midi/")) return midi(worked.midi, body, what);
+  if (what.starts_with("/api/record/") || what == "/api/doctor")
+    return run_program(worked.programs, body, source, what);
   return change_service(worked, body, source, what == "/api/service/swap");
 }
 

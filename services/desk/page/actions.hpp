@@ -6,7 +6,9 @@
 #include "ipc/base/result.hpp"
 #include "ipc/control/desk_address.hpp"
 #include "services/desk/base/cue_deck.hpp"
+#include "services/desk/base/midi_learner.hpp"
 #include "services/desk/base/panel.hpp"
+#include "services/desk/page/programs.hpp"
 
 namespace handcast::desk {
 
@@ -19,11 +21,13 @@ struct Action {
 /// The action of a path; null if there is none.
 const Action* find_action(std::string_view path);
 
-/// What the actions work on; `cues` may be null.
+/// What the actions work on; `cues` and `midi` may be null.
 struct Worked {
   std::string rig;
   Panel& panel;
-  CueDeck* cues = nullptr;
+  CueDeck* cues;
+  MidiLearner* midi;
+  Programs& programs;
 };
 
 /// Does what a page asks for. `body`: JSON as the page sends it. `source`: for the log. Errors:

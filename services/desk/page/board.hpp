@@ -15,11 +15,24 @@
 namespace handcast::desk {
 
 /// What open pages are told about, besides the values of the controls.
-enum class Topic : std::uint8_t { status, content, ages, hands, cues, presets };
-inline constexpr std::size_t kTopics = 6;  ///< number of topics
+enum class Topic : std::uint8_t {
+  status,
+  content,
+  ages,
+  hands,
+  cues,
+  presets,
+  midi,
+  recordings,
+  doctor,
+  calibration,
+  cue_list
+};
+inline constexpr std::size_t kTopics = 11;  ///< number of topics
 /// The names of their events.
-inline constexpr std::array<std::string_view, kTopics> kTopicNames{"status", "content", "ages",
-                                                                   "hands",  "cues",    "presets"};
+inline constexpr std::array<std::string_view, kTopics> kTopicNames{
+    "status", "content",    "ages",   "hands",       "cues",    "presets",
+    "midi",   "recordings", "doctor", "calibration", "cue_list"};
 
 /// The newest of everything that open pages are told, from the threads that watch the rig to those
 /// of the connections. A page that is slow misses what is in between: nothing queues up. Any

@@ -13,6 +13,7 @@
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <unordered_map>
 
@@ -24,6 +25,10 @@ namespace {
 
 /// If most connections are taken, those that have not asked for anything are ended so soon.
 constexpr std::int64_t kCrowded_ns = 100'000'000;
+/// The same with encryption, which takes several messages to and fro before anything is asked.
+constexpr std::int64_t kCrowdedEncrypted_ns = 1'000'000'000;
+
+constexpr const char* kTlsVersions = "SECURE128:-VERS-ALL:+VERS-TLS1.3:+VERS-TLS1.2";
 
 /// One request while it comes in.
 struct Incoming {
@@ -42,6 +47,18 @@ MHD_Result take_header(void* headers, MHD_ValueKind, const char* name, const cha
   auto [at, is_new] = all.emplace(lower(name), value ? value : "");
   if (!is_new) at->second += std::string(", ") + (value ? value : "");
   return MHD_YES;
+}
+
+/// The end of a connection that is this computer's: "192.168.1.5:8481".
+std::string local_of(MHD_Connection* connection) {
+  const auto* info = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
+  sockaddr_in own{};
+  socklen_t size = sizeof own;
+  char text[INET_ADDRSTRLEN] = "?";
+  if (!info || ::getsockname(info->connect_fd, reinterpret_cast<sockaddr*>(&own), &size) != 0)
+    return text;
+  inet_ntop(AF_INET, &own.sin_addr, text, sizeof text);
+  return fmt::format("{}:{}", text, ntohs(own.sin_port));
 }
 
 std::string peer_of(MHD_Connection* connection) {
@@ -100,6 +117,34 @@ Result<sockaddr_in> socket_address(const std::string& address, std::uint16_t por
 
 }  // namespace
 
+/// Counts how often each client connects. One thread.
+class Door {
+ public:
+  explicit Door(const HttpLimits& limits)
+      : most_(limits.connections_at_once), hz_(limits.connections_hz) {}
+
+  bool lets_in(const sockaddr* client, std::int64_t now_ns) {
+    if (client->sa_family != AF_INET) return true;  // it listens at addresses of IPv4
+    if (visitors_.size() > kMostVisitors) visitors_.clear();
+    const auto address = reinterpret_cast<const sockaddr_in*>(client)->sin_addr.s_addr;
+    auto& [left, at_ns] = visitors_.try_emplace(address, Visitor{most_, now_ns}).first->second;
+    left = std::min(most_, left + hz_ * ns_to_seconds(now_ns - at_ns));
+    at_ns = now_ns;
+    if (left < 1) return false;
+    left -= 1;
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kMostVisitors = 1024;
+  struct Visitor {
+    double left;
+    std::int64_t at_ns;
+  };
+  double most_, hz_;
+  std::unordered_map<in_addr_t, Visitor> visitors_;
+};
+
 struct HttpServer::Impl {
   struct Connection {
     int socket = -1;
@@ -110,7 +155,9 @@ struct HttpServer::Impl {
 
   Handler handler;
   HttpLimits limits;
+  TlsKeys tls;
   std::atomic<bool> is_closing = false;
+  std::optional<Door> door;  ///< of the thread that accepts
   MHD_Daemon* daemon = nullptr;
   std::mutex mutex;
   std::condition_variable wake;
@@ -132,6 +179,7 @@ struct HttpServer::Impl {
   /// connection was silent, and one byte a second is not silence.
   void reap() {
     run_at_low_priority();
+    const auto crowded_ns = tls.certificate.empty() ? kCrowded_ns : kCrowdedEncrypted_ns;
     std::unique_lock lock(mutex);
     for (;;) {
       wake.wait(lock, [&] { return is_closing || !connections.empty(); });
@@ -141,7 +189,7 @@ struct HttpServer::Impl {
       const bool is_crowded = connections.size() > limits.connections * 3 / 4;
       for (auto& [connection, state] : connections)
         if (now > state.until_ns ||
-            (is_crowded && !state.has_asked && now > state.begun_ns + kCrowded_ns))
+            (is_crowded && !state.has_asked && now > state.begun_ns + crowded_ns))
           ::shutdown(state.socket, SHUT_RDWR);
     }
   }
@@ -184,6 +232,8 @@ struct HttpServer::Impl {
     request.method = method;
     request.path = url;
     request.peer = peer_of(connection);
+    request.local = local_of(connection);
+    request.is_encrypted = !tls.certificate.empty();
     MHD_get_connection_values(connection, MHD_HEADER_KIND, take_header, &request.headers);
     incoming->is_refused = is_too_long(request, limits.body_bytes);
     const bool is_refused = incoming->is_refused;
@@ -236,14 +286,27 @@ struct HttpServer::Impl {
     if (impl.is_closing) ::shutdown(info->connect_fd, SHUT_RDWR);
   }
 
+  static MHD_Result on_arrival(void* self, const sockaddr* client, socklen_t) {
+    return static_cast<Impl*>(self)->door->lets_in(client, now_ns()) ? MHD_YES : MHD_NO;
+  }
+
   void start(const sockaddr_in& address) {
+    door.emplace(limits);
+    const bool is_encrypted = !tls.certificate.empty();
+    const std::array<MHD_OptionItem, 4> keys{
+        {{MHD_OPTION_HTTPS_MEM_CERT, 0, tls.certificate.data()},
+         {MHD_OPTION_HTTPS_MEM_KEY, 0, tls.key.data()},
+         {MHD_OPTION_HTTPS_PRIORITIES, 0, const_cast<char*>(kTlsVersions)},
+         {MHD_OPTION_END, 0, nullptr}}};
     daemon = MHD_start_daemon(
-        MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_POLL, 0, nullptr,
-        nullptr, on_request, this, MHD_OPTION_SOCK_ADDR, &address, MHD_OPTION_CONNECTION_LIMIT,
-        limits.connections, MHD_OPTION_CONNECTION_TIMEOUT, limits.stall_s,
-        MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.header_bytes, MHD_OPTION_THREAD_STACK_SIZE,
-        std::size_t{256 << 10}, MHD_OPTION_NOTIFY_COMPLETED, on_completed, nullptr,
-        MHD_OPTION_NOTIFY_CONNECTION, on_connection, this, MHD_OPTION_END);
+        MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_POLL |
+            (is_encrypted ? MHD_USE_TLS : 0),
+        0, on_arrival, this, on_request, this, MHD_OPTION_SOCK_ADDR, &address,
+        MHD_OPTION_CONNECTION_LIMIT, limits.connections, MHD_OPTION_CONNECTION_TIMEOUT,
+        limits.stall_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.header_bytes,
+        MHD_OPTION_THREAD_STACK_SIZE, std::size_t{256 << 10}, MHD_OPTION_NOTIFY_COMPLETED,
+        on_completed, nullptr, MHD_OPTION_NOTIFY_CONNECTION, on_connection, this, MHD_OPTION_ARRAY,
+        is_encrypted ? keys.data() : &keys.back(), MHD_OPTION_END);
   }
 };
 
@@ -251,12 +314,14 @@ HttpServer::HttpServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 HttpServer::~HttpServer() = default;
 
 Result<std::unique_ptr<HttpServer>> HttpServer::open(const std::string& address, std::uint16_t port,
-                                                     Handler handler, HttpLimits limits) {
+                                                     Handler handler, HttpLimits limits,
+                                                     TlsKeys tls) {
   const auto socket = socket_address(address, port);
   if (!socket) return tl::make_unexpected(socket.error());
   auto impl = std::make_unique<Impl>();
   impl->handler = std::move(handler);
   impl->limits = limits;
+  impl->tls = std::move(tls);
   // Threads begin with the priority of the one that starts them.
   std::thread([&] {
     run_at_low_priority();

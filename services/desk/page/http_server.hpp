@@ -18,6 +18,8 @@ struct HttpRequest {
   std::map<std::string, std::string> headers;  ///< by their names in lower case
   std::string body;                            ///< at most HttpLimits::body_bytes
   std::string peer;                            ///< the address of the client
+  std::string local;          ///< the address and port of this computer that it came to
+  bool is_encrypted = false;  ///< the server has a certificate
 
   /// The value of a header; "" if there is none.
   std::string header(const std::string& name) const {
@@ -50,7 +52,17 @@ struct HttpLimits {
   std::size_t body_bytes = 64 << 10;        ///< of a request; a larger one gets 413
   std::int64_t request_ns = 5'000'000'000;  ///< until a request has come whole
   std::int64_t answer_ns = 20'000'000'000;  ///< until an answer, but a stream, was taken
-  unsigned stall_s = 10;                    ///< a client that takes nothing for so long is left
+  /// One client may connect so often at once, and so often a second from then on; more is closed
+  /// before it costs a thread.
+  /// @{
+  double connections_at_once = 500, connections_hz = 200;
+  /// @}
+  unsigned stall_s = 10;  ///< a client that takes nothing for so long is left
+};
+
+/// PEM texts of a server that encrypts; empty: it does not.
+struct TlsKeys {
+  std::string certificate, key;
 };
 
 /// Serves HTTP/1.1 at one address, one request a connection, each in a thread of its own at low
@@ -60,9 +72,11 @@ class HttpServer {
   /// Any thread, several at once.
   using Handler = std::function<HttpAnswer(const HttpRequest&)>;
 
-  /// `port` 0: any that is free. Errors: unavailable (the port is taken, or no threads).
+  /// `port` 0: any that is free. Errors: bad_config (not an address), unavailable (the port is
+  /// taken, or no threads).
   static Result<std::unique_ptr<HttpServer>> open(const std::string& address, std::uint16_t port,
-                                                  Handler handler, HttpLimits limits = {});
+                                                  Handler handler, HttpLimits limits = {},
+                                                  TlsKeys tls = {});
   /// Closes all connections and waits for the handlers.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

@@ -13,8 +13,8 @@
 #include "ipc/daemon/contract.hpp"
 #include "ipc/msg/content_state.hpp"
 #include "ipc/msg/stage_mark.hpp"
-#include "services/desk/page/json_text.hpp"
 #include "services/desk/base/low_priority.hpp"
+#include "services/desk/page/json_text.hpp"
 
 namespace handcast::desk {
 namespace {
@@ -71,10 +71,8 @@ struct RigWatch::Streams {
   std::deque<std::pair<std::int64_t, double>> ages;  ///< when, and ms
 };
 
-RigWatch::RigWatch(std::string rig, Panel& panel, CueDeck* cues, Board& board)
-    : rig_(std::move(rig)),
-      panel_(panel),
-      cues_(cues),
+RigWatch::RigWatch(const Worked& worked, Board& board)
+    : worked_(worked),
       board_(board),
       streams_(std::make_unique<Streams>()),
       thread_([this] { watch(); }) {}
@@ -92,9 +90,13 @@ void RigWatch::take(const Scene& scene) {
 void RigWatch::watch() {
   run_at_low_priority();
   for (unsigned turn = 0; board_.wait_for_guest(); ++turn) {
-    board_.tell(panel_.values());
-    if (turn % kHandsEvery == 0) tell_hands(), tell_cues();
-    if (turn % kStatusEvery == 0) tell_status(), tell_content(), tell_ages();
+    board_.tell(worked_.panel.values());
+    if (turn % kHandsEvery == 0) tell_hands(), tell_cues(), tell_midi();
+    if (turn % kStatusEvery == 0) {
+      tell_status(), tell_content(), tell_ages();
+      board_.tell(Topic::recordings, worked_.programs.recordings());
+      board_.tell(Topic::doctor, worked_.programs.doctor());
+    }
     if (board_.guests() == 0) *streams_ = {};
     if (!board_.pause(kTurn)) return;
   }
@@ -120,8 +122,8 @@ void RigWatch::tell_hands() {
 }
 
 void RigWatch::tell_cues() {
-  if (!cues_) return board_.tell(Topic::cues, "null");
-  const auto place = cues_->place();
+  if (!worked_.cues) return board_.tell(Topic::cues, "null");
+  const auto place = worked_.cues->place();
   board_.tell(Topic::cues, json_text({{"names", place->names},
                                       {"current", place->current},
                                       {"next", place->next},
@@ -129,16 +131,27 @@ void RigWatch::tell_cues() {
                                       {"faded", std::round(place->faded * 100) / 100}}));
 }
 
+void RigWatch::tell_midi() {
+  if (!worked_.midi) return board_.tell(Topic::midi, "null");
+  const auto state = worked_.midi->state();
+  auto bindings = json::array();
+  for (const auto& [path, source] : state.bindings)
+    bindings.push_back({{"path", path}, {"source", source}});
+  board_.tell(Topic::midi, json_text({{"device", state.device},
+                                      {"learning", state.learning},
+                                      {"bindings", std::move(bindings)}}));
+}
+
 void RigWatch::tell_status() {
-  board_.tell(Topic::presets, json_text(panel_.presets()));
+  board_.tell(Topic::presets, json_text(worked_.panel.presets()));
   const auto answer =
-      control::ask_with_descriptors(rig_, {.verb = control::Verb::status}, kStatusPatience);
+      control::ask_with_descriptors(worked_.rig, {.verb = control::Verb::status}, kStatusPatience);
   board_.tell(Topic::status, answer ? json_text(answer->object.value("status", json::object()))
                                     : json_text({{"fault", answer.error().what}}));
 }
 
 void RigWatch::tell_content() {
-  auto* stream = streams_->content.get(rig_, "content.state");
+  auto* stream = streams_->content.get(worked_.rig, "content.state");
   if (!stream) return;
   const auto state = stream->latest(Deadline::now());
   if (!state) return streams_->content.failed(state.error());
@@ -152,7 +165,7 @@ void RigWatch::tell_content() {
 
 /// The ages of the light of the last ten seconds, as a histogram.
 void RigWatch::tell_ages() {
-  auto* stream = streams_->marks.get(rig_, daemon::marks_stream_of("projector"));
+  auto* stream = streams_->marks.get(worked_.rig, daemon::marks_stream_of("projector"));
   if (!stream) return;
   auto& ages = streams_->ages;
   for (std::size_t i = 0; i < kMostAtOnce; ++i) {

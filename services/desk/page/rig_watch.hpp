@@ -2,23 +2,22 @@
 #pragma once
 #include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 
-#include "services/desk/base/cue_deck.hpp"
-#include "services/desk/base/panel.hpp"
 #include "services/desk/base/surface.hpp"
+#include "services/desk/page/actions.hpp"
 #include "services/desk/page/board.hpp"
 
 namespace handcast::desk {
 
-/// Tells open pages how the rig is: the values of the controls 30 times a second, the hands and the
-/// cues 10 times, services, content and the ages of the light twice. A thread of its own, which
+/// Tells open pages how the rig is: the values of the controls 30 times a second, the hands,
+/// the cues and the MIDI controller 10 times, services, content, the ages of the light and what was
+/// started from the page twice. A thread of its own, which
 /// sleeps while no page is open.
 class RigWatch {
  public:
-  /// All outlive this; `cues` may be null.
-  RigWatch(std::string rig, Panel& panel, CueDeck* cues, Board& board);
+  /// Both outlive this.
+  RigWatch(const Worked& worked, Board& board);
   /// Waits for the thread.
   ~RigWatch();
   RigWatch(const RigWatch&) = delete;
@@ -33,13 +32,12 @@ class RigWatch {
   void watch();
   void tell_hands();
   void tell_cues();
+  void tell_midi();
   void tell_status();
   void tell_content();
   void tell_ages();
 
-  std::string rig_;
-  Panel& panel_;
-  CueDeck* cues_;
+  const Worked& worked_;
   Board& board_;
   std::unique_ptr<Streams> streams_;
   std::mutex mutex_;  ///< of `gestures_`

@@ -6,17 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
-#include <vector>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/base/input_file.hpp"
 #include "ipc/base/log.hpp"
-#include "ipc/daemon/description.hpp"
+#include "services/desk/page/facts.hpp"
 #include "services/desk/page/json_text.hpp"
 #include "services/desk/page/web_files.hpp"
 
@@ -29,6 +24,7 @@ using nlohmann::json;
 
 constexpr double kChanges_hz = 200, kMostChanges = 400;
 constexpr auto kStreamPatience = 1000ms;
+constexpr std::string_view kLookPath = "/api/look/";
 
 struct WebFile {
   std::string_view path;
@@ -44,6 +40,7 @@ constexpr std::array kFiles{
     WebFile{"/rig.js", &kRigJs, "text/javascript; charset=utf-8"},
     WebFile{"/picture.js", &kPictureJs, "text/javascript; charset=utf-8"},
     WebFile{"/chart.js", &kChartJs, "text/javascript; charset=utf-8"},
+    WebFile{"/tools.js", &kToolsJs, "text/javascript; charset=utf-8"},
 };
 
 HttpAnswer answer_of(int status, const json& body) {
@@ -114,65 +111,6 @@ class PictureStream final : public ByteStream {
   std::uint64_t generation_ = access_.generation();
 };
 
-std::filesystem::path share_folder() {
-  std::error_code gone;
-  return std::filesystem::read_symlink("/proc/self/exe", gone).parent_path() / "../share/handcast";
-}
-
-/// Whether a shader is one that is laid over others, or leads from one to another.
-bool is_no_look(const std::string& text) {
-  return text.find(R"("CATEGORIES": ["Filter")") != std::string::npos ||
-         text.find(R"("CATEGORIES": ["Transition")") != std::string::npos;
-}
-
-/// The names of the looks, sorted, as `handcast content` lists them.
-std::vector<std::string> look_names() {
-  const char* assets = std::getenv("HANDCAST_ASSETS");
-  const auto folder =
-      (assets && *assets ? std::filesystem::path(assets) : share_folder()) / "looks";
-  std::vector<std::string> names;
-  std::error_code absent;
-  for (const auto& file : std::filesystem::directory_iterator(folder, absent)) {
-    const auto& path = file.path();
-    if (path.extension() == ".fs" && !is_no_look(read_input(path, kMostText).value_or("")))
-      names.push_back(path.stem().string());
-  }
-  std::ranges::sort(names);
-  return names;
-}
-
-/// The back ends of the services, by name: [{"name", "sentence"}].
-json backends() {
-  auto all = json::object();
-  std::error_code absent;
-  for (const auto& file :
-       std::filesystem::directory_iterator(share_folder() / "services", absent)) {
-    const auto text = read_input(file.path(), kMostText);
-    const auto service = text ? daemon::parse_description(*text)
-                              : Result<daemon::ServiceDescription>(fail(Errc::bad_data, ""));
-    if (!service) continue;
-    auto& list = all[service->name] = json::array();
-    for (const auto& backend : service->backends)
-      list.push_back({{"name", backend.name}, {"sentence", backend.sentence}});
-  }
-  return all;
-}
-
-json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
-
-json json_of(const Control& control) {
-  constexpr std::array kKinds{"toggle", "whole", "number", "text", "choice", "numbers", "texts"};
-  return {{"path", control.path},
-          {"kind", kKinds[static_cast<std::size_t>(control.kind)]},
-          {"min", number_or_null(control.range.min)},
-          {"max", number_or_null(control.range.max)},
-          {"unit", control.range.unit},
-          {"words", control.words},
-          {"sentence", control.sentence},
-          {"initial", control.initial},
-          {"filed", control.filed}};
-}
-
 bool is_json(const HttpRequest& request) {
   return request.header("content-type").starts_with("application/json");
 }
@@ -192,9 +130,11 @@ HttpAnswer Router::answer(const HttpRequest& request) {
            {"X-Content-Type-Options", "nosniff"},
            {"Referrer-Policy", "no-referrer"},
            {"Cross-Origin-Resource-Policy", "same-origin"},
-           {"Cross-Origin-Opener-Policy", "same-origin"},
-           {"Cache-Control", "no-store"}})
+           {"Cross-Origin-Opener-Policy", "same-origin"}})
     answer.headers.emplace_back(name, value);
+  const auto is_cache = [](const auto& header) { return header.first == "Cache-Control"; };
+  if (std::ranges::none_of(answer.headers, is_cache))
+    answer.headers.emplace_back("Cache-Control", "no-store");
   return answer;
 }
 
@@ -205,6 +145,7 @@ HttpAnswer Router::route(const HttpRequest& request) {
     return refusal(405, "Only GET and POST are understood here.");
   if (is_post && !is_json(request)) return refusal(415, "A change is sent as application/json.");
   if (is_post && request.path == "/api/session") return open_session(request);
+  if (is_post && request.path == "/api/pair" && request.is_encrypted) return pair(request);
   if (!is_post)
     for (const auto& file : kFiles)
       if (file.path == request.path)
@@ -215,9 +156,10 @@ HttpAnswer Router::route(const HttpRequest& request) {
                 .stream = nullptr};
   const auto role = access_.role_of(request);
   if (!role)
-    return refusal(401,
-                   "Open the address that `handcast desk` prints: this browser has no valid "
-                   "token.");
+    return refusal(401, request.is_encrypted
+                            ? "Enter the code that `handcast desk --lan` prints."
+                            : "Open the address that `handcast desk` prints: this browser has no "
+                              "valid token.");
   return is_post ? post(request, *role) : get(request, *role);
 }
 
@@ -229,7 +171,19 @@ HttpAnswer Router::open_session(const HttpRequest& request) {
   const auto role = access_.role_of_token(token);
   if (!role) return refusal(401, "This token is not valid (any more); `handcast desk` prints one.");
   auto answer = answer_of(200, {{"role", control::kRoleNames[static_cast<std::size_t>(*role)]}});
-  answer.headers.emplace_back("Set-Cookie", access_.cookie_of(token));
+  answer.headers.emplace_back("Set-Cookie", access_.cookie_of(token, request));
+  return answer;
+}
+
+HttpAnswer Router::pair(const HttpRequest& request) {
+  const auto body = json::parse(request.body, nullptr, false);
+  if (!body.is_object() || !body.contains("code") || !body["code"].is_string())
+    return refusal(400, "The request has no text \"code\".");
+  const auto token = access_.pair(body["code"].get<std::string>());
+  if (!token) return refusal(token.error().code == Errc::bad_data ? 401 : 403, token.error().what);
+  log::info("page: {} has entered the code", request.peer);
+  auto answer = answer_of(200, json::object());
+  answer.headers.emplace_back("Set-Cookie", access_.cookie_of(*token, request));
   return answer;
 }
 
@@ -252,6 +206,14 @@ HttpAnswer Router::get(const HttpRequest& request, Role role) {
     answer.stream = std::make_unique<PictureStream>(pictures_, access_, lookers_);
     return answer;
   }
+  if (request.path.starts_with(kLookPath)) {
+    auto picture = picture_of_look(std::string_view(request.path).substr(kLookPath.size()));
+    if (!picture) return refusal(404, "There is no picture of this look.");
+    answer.type = "image/png";
+    answer.body = std::move(*picture);
+    answer.headers.emplace_back("Cache-Control", "private, max-age=3600");
+    return answer;
+  }
   if (find_action(request.path)) return refusal(405, "A change is sent with POST.");
   return refusal(404, "There is nothing at this address.");
 }
@@ -262,6 +224,7 @@ HttpAnswer Router::post(const HttpRequest& request, Role role) {
   if (role < action->least)
     return refusal(403, fmt::format("Only the {} may do that.",
                                     control::kRoleNames[static_cast<std::size_t>(action->least)]));
+  if (is_too_often()) return refusal(429, "There are too many changes at once.");
   const auto source =
       fmt::format("page {} {}", control::kRoleNames[static_cast<std::size_t>(role)], request.peer);
   const auto done = act(worked_, *action, request.body, source);
@@ -277,7 +240,7 @@ HttpAnswer Router::start(Role role) const {
   return answer_of(200, {{"rig", worked_.rig},
                          {"role", control::kRoleNames[static_cast<std::size_t>(role)]},
                          {"controls", std::move(controls)},
-                         {"looks", look_names()},
+                         {"looks", looks()},
                          {"backends", backends()}});
 }
 

@@ -16,9 +16,11 @@ namespace handcast::desk {
 ///
 ///   GET  /, /page.css, …      the files of the page, for everybody
 ///   POST /api/session         {"token": …}: the cookie that keeps it
+///   POST /api/pair            {"code": …}: the same for a code, from another computer
 ///   GET  /api/start           who one is; controls, looks, back ends
 ///   GET  /api/events          server-sent events: "values" and those of kTopicNames
 ///   GET  /api/picture         packets of PictureFeed
+///   GET  /api/look/NAME       the picture of a look, PNG
 ///   POST /api/…               see actions.cpp
 class Router {
  public:
@@ -33,6 +35,7 @@ class Router {
  private:
   HttpAnswer route(const HttpRequest& request);
   HttpAnswer open_session(const HttpRequest& request);
+  HttpAnswer pair(const HttpRequest& request);
   HttpAnswer get(const HttpRequest& request, control::Role role);
   HttpAnswer post(const HttpRequest& request, control::Role role);
   HttpAnswer start(control::Role role) const;

@@ -8,7 +8,7 @@ namespace handcast::desk {
 /// The page, its style, and its scripts.
 /// @{
 extern const std::string_view kIndexHtml, kPageCss;
-extern const std::string_view kPageJs, kDomJs, kControlsJs, kRigJs, kPictureJs, kChartJs;
+extern const std::string_view kPageJs, kDomJs, kControlsJs, kRigJs, kPictureJs, kChartJs, kToolsJs;
 /// @}
 
 }  // namespace handcast::desk

@@ -4,6 +4,7 @@
 import {$, el, post, say, setText} from '/dom.js';
 
 const kSendEvery_ms = 33;   // a slider that is moved
+const kEcho_ms = 1000;      // by then the desk has told of what was sent to it
 const kOwnHand_ms = 500;    // so long after a person has moved a widget, it does not follow others
 
 /** The value of TOML text: numbers, texts, toggles and lists are written as in JSON. */
@@ -26,8 +27,11 @@ export class Settings {
     this.toml = new Map();
     this.followers = new Map(controls.map((control) => [control.path, []]));
     this.waiting = new Map();   // path -> TOML that is not sent yet
+    this.unheard = new Map();   // path -> TOML of which the desk has not told yet, and when it was set
     this.isSending = false;
     this.mayChange = false;
+    this.mayLearn = false;      // knobs of a MIDI controller
+    this.knobs = new Map();     // path -> the buttons that bind it
   }
 
   follow(path, follower) {
@@ -38,6 +42,7 @@ export class Settings {
   take(values) {
     for (const [path, toml] of Object.entries(values)) {
       this.toml.set(path, toml);
+      if (String(parse(this.unheard.get(path)?.toml)) === String(parse(toml))) this.unheard.delete(path);
       for (const follower of this.followers.get(path) ?? []) follower(toml);
     }
   }
@@ -49,7 +54,15 @@ export class Settings {
   /** Changes a setting soon. What is turned quickly is sent thirty times a second. */
   set(path, toml) {
     this.waiting.set(path, toml);
+    this.unheard.set(path, {toml: toml ?? this.byPath.get(path).filed, when: performance.now()});
     if (!this.isSending) this.send();
+  }
+
+  /** All values as the one who turns them knows them: also those that were set a moment ago. */
+  current() {
+    const values = new Map(this.toml);
+    for (const [path, {toml, when}] of this.unheard) if (performance.now() - when < kEcho_ms) values.set(path, toml);
+    return values;
   }
 
   async send() {
@@ -65,14 +78,9 @@ export class Settings {
     this.isSending = false;
   }
 
-  /** Waits until the desk has told of what was sent. */
-  async settled() {
-    while (this.isSending) await new Promise((resolve) => setTimeout(resolve, kSendEvery_ms));
-    await new Promise((resolve) => setTimeout(resolve, 4 * kSendEvery_ms));
-  }
-
   /** Shows what the desk last told. */
   show(paths) {
+    for (const path of paths) this.unheard.delete(path);
     for (const path of paths)
       if (this.toml.has(path)) for (const follower of this.followers.get(path) ?? []) follower(this.toml.get(path), true);
   }
@@ -190,6 +198,15 @@ function rangeText(control) {
   return parts.join(' · ');
 }
 
+/** The button that binds a setting to a knob; empty of what no knob can turn. It says what turns the setting. */
+function knobOf(settings, control) {
+  if (!settings.mayLearn || ['text', 'texts', 'numbers'].includes(control.kind)) return null;
+  const button = el('button', {className: 'knob', 'aria-label': `Learn a MIDI knob for ${control.path}`}, 'MIDI');
+  button.addEventListener('click', () => post(`/api/midi/${button.getAttribute('aria-pressed') === 'true' ? 'stop' : 'learn'}`, {path: control.path}));
+  settings.knobs.set(control.path, [...(settings.knobs.get(control.path) ?? []), button]);
+  return button;
+}
+
 let rows = 0;
 /** The row of a setting: name, sentence, range, widget, reset. */
 export function settingRow(settings, control, name) {
@@ -206,7 +223,7 @@ export function settingRow(settings, control, name) {
       el('div', {id: `${id}-about`},
         el('div', {className: 'sentence'}, control.sentence),
         el('div', {className: 'range'}, rangeText(control)))),
-    widget, reset);
+    widget, reset, knobOf(settings, control));
   settings.follow(control.path, () => row.classList.toggle('changed', settings.isChanged(control.path)));
   return row;
 }
@@ -283,15 +300,15 @@ export function showCompare(settings) {
     $('ab').replaceChildren(...(now === 'A' ? ['A', el('span', {'aria-hidden': 'true'}, ' / b')] : [el('span', {'aria-hidden': 'true'}, 'a / '), 'B']));
     $('ab').setAttribute('aria-label', `Compare: state ${now} is shown; switch to ${other}`);
   };
-  $('ab').addEventListener('click', async () => {
-    await settings.settled();
-    states[now] = new Map(settings.toml);
+  $('ab').addEventListener('click', () => {
+    const left = states[now] = settings.current();
     now = now === 'A' ? 'B' : 'A';
     label();
     const wanted = states[now];
     if (!wanted) return say(`State ${now} begins as a copy; change it, and switch to compare.`);
-    const different = [...wanted].filter(([path, toml]) => settings.toml.get(path) !== toml).map(([path, toml]) => `${path}=${toml}`);
-    if (different.length > 0) await post('/api/set', {set: different});
+    const different = [...wanted].filter(([path, toml]) => String(parse(left.get(path))) !== String(parse(toml)));
+    // In the order in which a person turns them: what is turned next belongs to the state that is shown now.
+    for (const [path, toml] of different) settings.set(path, toml);
     say(different.length === 0 ? `State ${now}, which is the same` : `State ${now}: ${different.length} settings differ`);
   });
   $('ab').disabled = !settings.mayChange;

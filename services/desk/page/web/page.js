@@ -5,6 +5,7 @@ import {$, el, kRoles, post, say, setText} from '/dom.js';
 import {Settings, showCompare, showLight, showSettings} from '/controls.js';
 import {Cues, Hands, Looks, Services, showAges} from '/rig.js';
 import {Picture} from '/picture.js';
+import {Tools} from '/tools.js';
 
 const kRetry_ms = 2000;
 
@@ -36,6 +37,8 @@ async function askStart() {
     if (answer.ok) return notice(''), told;
     notice(told.error);
     link('bad', 'no access');
+    // From another computer: a code is traded for a cookie.
+    $('pair').hidden = answer.status !== 401 || location.protocol !== 'https:';
   } catch {
     link('bad', 'the desk is away');
   }
@@ -44,6 +47,7 @@ async function askStart() {
 
 class Page {
   constructor(start) {
+    $('pair').hidden = true;
     this.start = JSON.stringify(start);
     const may = kRoles.indexOf(start.role);
     this.role = start.role;
@@ -52,10 +56,12 @@ class Page {
     $('main').hidden = false;
     const settings = this.settings = new Settings(start.controls);
     settings.mayChange = may >= 1;
+    settings.mayLearn = may >= 2;
     this.filter = showSettings(settings);
     showLight(settings);
     showCompare(settings);
     this.services = new Services(start.backends, may >= 2);
+    this.tools = new Tools(settings, may >= 2);
     this.looks = new Looks(start.looks, settings);
     this.cues = new Cues(settings.mayChange);
     this.hands = new Hands();
@@ -99,6 +105,11 @@ class Page {
     on('ages', showAges);
     on('hands', (hands) => this.hands.take(hands));
     on('cues', (cues) => this.cues.take(cues));
+    on('cue_list', (list) => this.cues.takeList(list));
+    on('midi', (midi) => this.tools.takeMidi(midi));
+    on('recordings', (recordings) => this.tools.takeRecordings(recordings));
+    on('doctor', (doctor) => this.tools.takeDoctor(doctor));
+    on('calibration', (calibration) => this.tools.takeCalibration(calibration));
     on('presets', (names) => {
       const chosen = $('preset').value;
       $('preset').replaceChildren(...(names.length ? names : ['']).map((name) => el('option', {value: name}, name || 'No presets yet')));
@@ -123,7 +134,7 @@ class Page {
   }
 }
 
-/** Keys that are no letters of a text. */
+/** Keys that are no letters of a text; those of the cues come first. */
 function listenToKeys() {
   document.addEventListener('keydown', (event) => {
     const isText = event.target.matches('input:not([type=range]):not([type=checkbox]):not([type=radio]), select, textarea');
@@ -132,7 +143,8 @@ function listenToKeys() {
     if (event.ctrlKey || event.metaKey) {
       if (event.key === 'z') press('undo');
       if (event.key === 'y' || event.key === 'Z') press('redo');
-    } else if (event.key === 'B') press('blackout');
+    } else if (page?.cues.hasKey(event.key)) post('/api/cue', {do: 'key', key: event.key});
+    else if (event.key === 'B') press('blackout');
     else if (event.key === 'F') press('freeze');
     else if (event.key === '/') event.preventDefault(), $('search').focus();
   });
@@ -154,13 +166,24 @@ function showTabs() {
   show();
 }
 
+function listenToCode() {
+  $('pair').addEventListener('submit', async (event) => {
+    event.preventDefault();
+    if (await post('/api/pair', {code: $('code').value.replace(/\D/g, '')})) $('pair').hidden = true;
+    $('code').value = '';
+  });
+}
+
+let page = null;
+
 async function begin() {
   listenToKeys();
+  listenToCode();
   await openSession();
   showTabs();
   for (;;) {
     const start = await askStart();
-    if (start) return new Page(start);
+    if (start) return page = new Page(start);
     await new Promise((resolve) => setTimeout(resolve, kRetry_ms));
   }
 }

@@ -119,10 +119,11 @@ export function showAges(ages) {
 /** What is on the hands, and the looks. */
 export class Looks {
   constructor(looks, settings) {
-    this.buttons = looks.map((look) => {
-      const button = el('button', {title: look}, look);
+    this.buttons = looks.map(({name, picture}) => {
+      const image = picture ? el('img', {src: `/api/look/${name}`, alt: '', width: 96, height: 60, loading: 'lazy', decoding: 'async'}) : null;
+      const button = el('button', {title: name}, image, el('span', {}, name));
       button.disabled = !settings.mayChange;
-      button.addEventListener('click', () => this.show(look));
+      button.addEventListener('click', () => this.show(name));
       return button;
     });
     $('look-list').replaceChildren(...this.buttons);
@@ -155,6 +156,7 @@ export class Cues {
   constructor(mayChange) {
     this.mayChange = mayChange;
     this.names = null;
+    this.about = [];
     this.buttons = [];
     for (const what of ['go', 'back', 'hold']) {
       $(`cue-${what}`).addEventListener('click', () => post('/api/cue', {do: what}));
@@ -163,25 +165,40 @@ export class Cues {
   }
 
   take(cues) {
+    this.newest = cues;
     const names = cues?.names ?? [];
     const current = cues?.current ?? -1, next = cues?.next ?? 0;
     for (const what of ['go', 'back', 'hold']) $(`cue-${what}`).disabled = !this.mayChange || names.length === 0;
     $('cue-go').disabled ||= next >= names.length;
     $('cue-back').disabled ||= current < 1;
     setText($('cue-go'), next < names.length ? `Go: ${names[next]}` : 'Go');
-    setText($('cue-text'), cues === null ? 'no list: see desk.cues' : current < 0 ? `${names.length} cues` : `${current + 1} of ${names.length}`);
+    $('no-cues').hidden = cues !== null;
+    setText($('cue-text'), cues === null ? 'no list' : current < 0 ? `${names.length} cues` : `${current + 1} of ${names.length}`);
     $('cue-hold').setAttribute('aria-pressed', String(cues?.held ?? false));
     if (JSON.stringify(names) !== this.names) this.list(names);
     this.buttons.forEach((button, i) => {
       button.setAttribute('aria-current', String(i === current));
+      button.classList.toggle('next', i === next);
       button.style.setProperty('--faded', i === current ? `${100 * cues.faded}%` : '0%');
     });
+  }
+
+  hasKey(key) { return this.mayChange && this.about.some(({on}) => on.split(', ').includes(`key ${key}`)); }
+
+  /** What starts the cues, and what they do. */
+  takeList(about) {
+    this.about = about;
+    this.names = null;
+    if (this.newest !== undefined) this.take(this.newest);
   }
 
   list(names) {
     this.names = JSON.stringify(names);
     this.buttons = names.map((name, index) => {
-      const button = el('button', {}, el('i', {}, String(index + 1)), name);
+      const {on = '', does = ''} = this.about[index] ?? {};
+      const button = el('button', {}, el('i', {}, String(index + 1)),
+        el('span', {className: 'cue'}, el('span', {className: 'name'}, name), on ? el('span', {className: 'on'}, on) : null,
+          does ? el('span', {className: 'does'}, does) : null), el('span', {className: 'mark'}));
       button.disabled = !this.mayChange;
       button.addEventListener('click', () => post('/api/cue', {do: 'jump', cue: String(index + 1)}));
       return button;

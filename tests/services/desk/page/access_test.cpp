@@ -144,12 +144,12 @@ TEST_F(PageTest, ItIsServedOnThisComputerAlone) {
   for (const auto* listen :
        {"0.0.0.0:8480", "10.0.0.7:8480", "127.0.0.1", "127.0.0.1:x", ":8480", "127.0.0.1:70000"}) {
     rig_.desk.page.listen = listen;
-    const auto page = desk::open_page(rig_, panel_);
+    const auto page = desk::open_page(rig_, {panel_});
     ASSERT_FALSE(page) << listen;
     EXPECT_EQ(page.error().code, Errc::bad_config) << listen;
   }
   rig_.desk.page.listen = "";
-  EXPECT_EQ(*desk::open_page(rig_, panel_), nullptr);
+  EXPECT_EQ(*desk::open_page(rig_, {panel_}), nullptr);
 }
 
 }  // namespace

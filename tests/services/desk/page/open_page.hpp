@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ipc/control/desk_address.hpp"
@@ -60,6 +61,39 @@ class TableCues final : public desk::CueDeck {
           .names = {"Doors", "Empty hands", "First light", "Water", "Skeleton", "Fire", "Out"}});
 };
 
+/// A MIDI controller with a knob that is moved by bind().
+class TableMidi final : public desk::MidiLearner {
+ public:
+  Result<void> learn(std::string_view path) override {
+    const std::lock_guard lock(mutex_);
+    if (path == "no.such") return fail(Errc::bad_config, "there is no setting 'no.such'");
+    state_.learning = path;
+    return {};
+  }
+  void stop_learning() override {
+    const std::lock_guard lock(mutex_);
+    state_.learning.clear();
+  }
+  void forget(std::string_view path) override {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(state_.bindings, [&](const auto& binding) { return binding.first == path; });
+  }
+  desk::MidiState state() const override {
+    const std::lock_guard lock(mutex_);
+    return state_;
+  }
+  /// Somebody moves a knob.
+  void bind() {
+    const std::lock_guard lock(mutex_);
+    if (state_.learning.empty()) return;
+    state_.bindings.emplace_back(std::exchange(state_.learning, ""), "controller 7 of channel 1");
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  desk::MidiState state_{.device = "nanoKONTROL2", .learning = {}, .bindings = {}};
+};
+
 /// The page of a rig that is not there, at any port, with its file in a folder of its own.
 class PageTest : public testing::Test {
  protected:
@@ -73,7 +107,7 @@ class PageTest : public testing::Test {
 
   void open() {
     page_.reset();
-    auto page = desk::open_page(rig_, panel_, &cues_);
+    auto page = desk::open_page(rig_, {panel_, &cues_, &midi_, rig_file()});
     ASSERT_TRUE(page) << page.error().what;
     page_ = std::move(*page);
     address_ = *control::read_desk_file(*control::desk_file(rig_.name));
@@ -82,6 +116,7 @@ class PageTest : public testing::Test {
                     port_);
   }
 
+  std::filesystem::path rig_file() const { return scratch_.path() / "table.toml"; }
   /// The headers of a program with the token of a role.
   HttpHeaders as(control::Role role) const {
     return {{"Authorization", "Bearer " + address_.tokens[static_cast<std::size_t>(role)]}};
@@ -102,6 +137,7 @@ class PageTest : public testing::Test {
   config::Rig rig_;
   TablePanel panel_;
   TableCues cues_;
+  TableMidi midi_;
   std::unique_ptr<desk::Surface> page_;
   control::DeskAddress address_;
   std::uint16_t port_ = 0;

@@ -3,10 +3,14 @@
 // standard input ends.
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/writer.hpp"
+#include "services/recording/about.hpp"
+#include "services/recording/index_row.hpp"
 #include "tests/services/desk/page/fake_rig.hpp"
 #include "tests/services/desk/page/open_page.hpp"
 
@@ -79,6 +83,64 @@ void draw(msg::CameraFrame& frame, double t) {
     }
 }
 
+/// As the cues of TableCues are named.
+constexpr const char* kEvening = R"(
+[[cue]]
+name = "Doors"
+on = "at 19:30"
+set.light.master = 0
+
+[[cue]]
+name = "Empty hands"
+on = ["key d", "idle 30"]
+fade_s = 3
+set.light.master = 0.2
+
+[[cue]]
+name = "First light"
+on = "left.appears"
+fade_s = 8
+curve = "s-curve"
+both = "light"
+set.light.master = 1
+set.projector.brightness = { to = 0.8, fade_s = 12, curve = "linear" }
+
+[[cue]]
+name = "Water"
+on = ["right.pinch", "key w"]
+both = "water"
+transition = "isf:dissolve.fs"
+transition_s = 2
+
+[[cue]]
+name = "Skeleton"
+on = "after 20"
+both = "xray"
+
+[[cue]]
+name = "Fire"
+both = "lava"
+
+[[cue]]
+name = "Out"
+on = "at 21:00"
+fade_s = 10
+set.light.master = 0
+)";
+
+/// The files of a recording, as far as the page reads them.
+void write_recording(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / recording::kAboutFile) << recording::about_text("table", {"pose.hands"});
+  std::ofstream(folder / "pose.hands.data") << std::string(3'400'000, ' ');
+  std::ofstream index(folder / "pose.hands.index", std::ios::binary);
+  for (const std::int64_t seconds : {100, 142}) {
+    recording::IndexRow row;
+    row.published_ns = seconds * 1'000'000'000;
+    index.write(reinterpret_cast<const char*>(&row), sizeof row);
+  }
+}
+
 desk::Scene scene_at(double t) {
   desk::Scene scene;
   scene.now_ns = now_ns();
@@ -115,7 +177,12 @@ int main() {
   fake.give("marks.projector", marks.fd());
   test::TablePanel panel;
   test::TableCues cues;
-  auto page = desk::open_page(rig, panel, &cues);
+  test::TableMidi midi;
+  rig.desk.cues = scratch.path() / "evening.toml";
+  std::ofstream(rig.desk.cues) << kEvening;
+  write_recording(scratch.path() / "recordings" / "rehearsal");
+  rig.desk.page.recordings = scratch.path() / "recordings";
+  auto page = desk::open_page(rig, {panel, &cues, &midi, scratch.path() / "table.toml"});
   if (!page) return std::fprintf(stderr, "%s\n", page.error().what.c_str()), 1;
   const auto address = *control::read_desk_file(*control::desk_file(rig.name));
   for (std::size_t role = 0; role < control::kRoles; ++role)
@@ -142,6 +209,7 @@ int main() {
     mark.marks[0] = {msg::Stage::light, 0, now_ns(), now_ns()};
     marker.publish(mark);
     (*page)->turn(scene_at(t));
+    if (turn % 30 == 0) midi.bind();
   }
   return 0;
 }
