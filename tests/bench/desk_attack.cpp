@@ -38,16 +38,17 @@ constexpr std::uint16_t kOscPort = 19002, kClosedPort = 19003;
 constexpr int kMessages_hz = 100'000, kBatch = 100;
 constexpr int kLorises = 200, kConnections_hz = 2'000;
 
-/// A thread that works until the object ends, where it can, on what no other thread needs: the
-/// attacker is another computer.
+/// From here on, this thread takes what no other thread needs: the attacker is another computer.
+void step_back() {
+  const sched_param none{};
+  ::sched_setscheduler(0, SCHED_IDLE, &none);
+}
+
+/// A thread that works until the object ends.
 class Attacker {
  public:
   explicit Attacker(std::function<void(const std::atomic<bool>& is_over)> work)
-      : thread_([this, work = std::move(work)] {
-          const sched_param none{};
-          ::sched_setscheduler(0, SCHED_IDLE, &none);
-          work(is_over_);
-        }) {}
+      : thread_([this, work = std::move(work)] { work(is_over_); }) {}
   ~Attacker() {
     is_over_ = true;
     thread_.join();
@@ -71,6 +72,7 @@ std::string osc_message(unsigned number) {
 
 /// Sends messages to a port in batches.
 void flood(std::uint16_t port, std::atomic<std::uint64_t>& sent, const std::atomic<bool>& is_over) {
+  step_back();
   const UniqueFd socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in to{};
   to.sin_family = AF_INET;
@@ -92,6 +94,7 @@ void flood(std::uint16_t port, std::atomic<std::uint64_t>& sent, const std::atom
 
 /// Connections that never say all, kept open for as long as they are let.
 void crawl(std::uint16_t port, const std::atomic<bool>& is_over) {
+  step_back();
   std::vector<std::unique_ptr<Wire>> open(kLorises);
   while (!is_over)
     for (auto& each : open) {
@@ -106,6 +109,7 @@ void crawl(std::uint16_t port, const std::atomic<bool>& is_over) {
 
 /// One connection after the other with a request that makes no sense.
 void storm(std::uint16_t port, std::atomic<std::uint64_t>& sent, const std::atomic<bool>& is_over) {
+  step_back();
   for (auto due_ns = now_ns(); !is_over; due_ns += 1'000'000'000ll / kConnections_hz) {
     sleep_until_ns(due_ns);
     Wire wire(port);
