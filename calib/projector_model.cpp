@@ -29,6 +29,13 @@ glm::dmat3 ProjectorModel::homography_at(double depth_m) const {
   return homography;
 }
 
+ProjectorModel ProjectorModel::moved(const glm::dmat3& pixels) const {
+  auto other = *this;
+  other.from_camera = pixels * from_camera;
+  other.parallax = pixels * parallax;
+  return other;
+}
+
 ProjectorModel ProjectorModel::normalised() const {
   const double scale = 1 / from_camera[2][2];
   auto same = *this;

@@ -33,6 +33,8 @@ struct ProjectorModel {
   glm::dvec2 camera_pixel_of(const glm::dvec2& projector_px) const;
   /// Undistorted camera px to projector px on the plane z = depth_m, which is above 0.
   glm::dmat3 homography_at(double depth_m) const;
+  /// The model if another pixel is lit in place of each: `pixels` maps those of this model to them.
+  ProjectorModel moved(const glm::dmat3& pixels) const;
   /// The model in the scale in which the lower right element of from_camera is 1.
   ProjectorModel normalised() const;
   /// The projector's centre in camera space, metres: 0 for a coaxial projector. Not finite if the

@@ -41,17 +41,31 @@ Result<ipc::Segment> LiveBoard::again() const {
   return ipc::Segment::open(UniqueFd(::dup(ring_.fd())));
 }
 
-/// The newest message of a ring; the default one if there is none.
-static Result<msg::LiveSettings> newest(ipc::Segment ring) {
-  auto reader = ipc::Reader<msg::LiveSettings>::watch(std::move(ring));
-  if (!reader) return tl::make_unexpected(reader.error());
-  const auto last = reader->latest(Deadline::now());
-  if (last) return **last;
-  if (last.error().code == Errc::timeout) return msg::LiveSettings();
-  return tl::make_unexpected(last.error());
-}
+/// The ring is mapped once: it has megabytes, and now() is called for every picture of the desk.
+struct LiveBoard::View {
+  ipc::Reader<msg::LiveSettings> reader;
+  msg::LiveSettings newest;
+};
 
-Result<msg::LiveSettings> LiveBoard::now() const { return again().and_then(newest); }
+LiveBoard::~LiveBoard() = default;
+LiveBoard::LiveBoard(LiveBoard&&) noexcept = default;
+LiveBoard& LiveBoard::operator=(LiveBoard&&) noexcept = default;
+
+Result<msg::LiveSettings> LiveBoard::now() const {
+  if (!view_) {
+    auto reader = again().and_then(
+        [](ipc::Segment&& ring) { return ipc::Reader<msg::LiveSettings>::watch(std::move(ring)); });
+    if (!reader) return tl::make_unexpected(reader.error());
+    view_ = std::make_unique<View>(View{std::move(*reader), {}});
+  }
+  if (!view_->reader.await(Deadline::now())) return view_->newest;
+  const auto last = view_->reader.latest(Deadline::now());
+  if (last)
+    view_->newest = **last;
+  else if (last.error().code != Errc::timeout)
+    return tl::make_unexpected(last.error());
+  return view_->newest;
+}
 
 Result<std::uint64_t> LiveBoard::amend(
     const std::function<Result<void>(msg::LiveSettings&)>& change) const {

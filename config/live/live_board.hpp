@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,9 @@ class LiveBoard {
  public:
   /// Takes the ring. `filed`: the rig of `file`, beside which presets are kept.
   LiveBoard(ipc::Segment ring, Rig filed, std::filesystem::path file);
+  ~LiveBoard();
+  LiveBoard(LiveBoard&& other) noexcept;
+  LiveBoard& operator=(LiveBoard&& other) noexcept;
   /// Opens the board of a rig. Errors: unavailable (it is not up), bad_data (of another version).
   static Result<LiveBoard> open(const std::string& rig);
 
@@ -58,11 +62,14 @@ class LiveBoard {
   const std::filesystem::path& file() const { return file_; }
 
  private:
+  struct View;
+
   Result<ipc::Segment> again() const;
   Result<std::string> kept() const;
   Result<std::uint64_t> amend(const std::function<Result<void>(msg::LiveSettings&)>& change) const;
 
   ipc::Segment ring_;
+  mutable std::unique_ptr<View> view_;  ///< the ring as it is read; null before the first now()
   Rig filed_;
   std::filesystem::path file_;
 };

@@ -71,6 +71,7 @@ void describe(Visitor& visitor, DeskPage& page) {
 /// [desk]
 struct Desk {
   std::string cues;
+  std::string gestures;
   DeskOsc osc;
   DeskMidi midi;
   DeskPage page;
@@ -80,6 +81,8 @@ struct Desk {
 template <class Visitor>
 void describe(Visitor& visitor, Desk& desk) {
   visitor.field("cues", desk.cues, "The cue list, a TOML file. Empty: none.");
+  visitor.field("gestures", desk.gestures,
+                "The settings that hands turn, a TOML file with [[gesture]]. Empty: none.");
   visitor.section("osc", desk.osc, "OSC in and out.");
   visitor.section("midi", desk.midi, "A MIDI controller.");
   visitor.section("page", desk.page, "The page in a browser.");

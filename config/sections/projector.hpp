@@ -84,6 +84,26 @@ void describe(Visitor& visitor, ProjectorWindow& window) {
                 "but the picture may be torn.");
 }
 
+/// [projector.lamp]
+struct ProjectorLamp {
+  std::string pjlink;
+  std::string password_file;
+  std::string input;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, ProjectorLamp& lamp) {
+  visitor.field("pjlink", lamp.pjlink,
+                "Where the projector takes commands by PJLink: HOST or HOST:PORT. Empty: nowhere.");
+  visitor.field("password_file", lamp.password_file,
+                "A file with the password of PJLink in its first line, which only this user can "
+                "read. Empty: that of the environment variable HANDCAST_PJLINK_PASSWORD, if any.");
+  visitor.field(
+      "input", lamp.input,
+      "The input that is chosen when the lamp is turned on, in PJLink's two digits: 31 is "
+      "the first digital one. Empty: it is left alone.");
+}
+
 /// [projector]
 struct Projector {
   std::string backend = "twin";
@@ -101,6 +121,7 @@ struct Projector {
   ProjectorFile file;
   ProjectorKms kms;
   ProjectorWindow window;
+  ProjectorLamp lamp;
   Process process;
 };
 
@@ -155,6 +176,7 @@ void describe(Visitor& visitor, Projector& projector) {
   visitor.section("file", projector.file, "The back end `file`.");
   visitor.section("kms", projector.kms, "The back end `kms`.");
   visitor.section("window", projector.window, "The back end `window`.");
+  visitor.section("lamp", projector.lamp, "The projector's lamp and shutter, over the network.");
   visitor.section("process", projector.process, "The process of the service.");
 }
 

@@ -54,9 +54,9 @@ void describe(Visitor& visitor, Twin& twin) {
   visitor.section("shape", twin.shape, "The differences of the true hand from the model.");
   visitor.section("geometry", twin.geometry,
                   "What the calibration has wrong: the differences of the true rig from it.");
-  visitor.section("tracker", twin.tracker, "The errors of the hand tracker.");
-  visitor.section("detector", twin.detector, "The errors of the landmark detector.");
-  visitor.section("image", twin.image, "The camera images.");
+  visitor.section("tracker", twin.tracker, "The errors of the hand tracker.", Effect::live);
+  visitor.section("detector", twin.detector, "The errors of the landmark detector.", Effect::live);
+  visitor.section("image", twin.image, "The camera images.", Effect::live);
   visitor.section("projector", twin.projector, "The times of the projector's frames.");
   visitor.section("prop", twin.prop, "What is in front of the camera in place of hands.");
 }

@@ -40,7 +40,7 @@ enum class Effect {
 //     }
 //
 // A setting whose declaration ends with Effect::live can be changed while the rig is up (`handcast
-// set`); of a section it is said of all settings in it.
+// set`). Of a section it is said of all settings in it that do not say otherwise.
 //
 // Collector (settings.hpp) is the visitor. The loader, the printer (commented TOML), `--set
 // path=value` and REFERENCE.md use the listing that it makes. The default of a setting is the

@@ -2,6 +2,7 @@
 #pragma once
 #include <concepts>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -79,26 +80,26 @@ class Collector {
   /// `range` must outlive the listing.
   /// @{
   void field(std::string_view name, bool& value, std::string_view sentence,
-             Effect effect = Effect::restart) {
+             std::optional<Effect> effect = {}) {
     add(name, &value, {}, sentence, effect);
   }
   void field(std::string_view name, std::string& value, std::string_view sentence,
-             Effect effect = Effect::restart) {
+             std::optional<Effect> effect = {}) {
     add(name, &value, {}, sentence, effect);
   }
   void field(std::string_view name, std::vector<std::string>& value, std::string_view sentence,
-             Effect effect = Effect::restart) {
+             std::optional<Effect> effect = {}) {
     add(name, &value, {}, sentence, effect);
   }
   template <Choice Enum>
   void field(std::string_view name, Enum& value, std::string_view sentence,
-             Effect effect = Effect::restart) {
+             std::optional<Effect> effect = {}) {
     add(name, ChoiceTarget::of(value), {}, sentence, effect);
   }
   template <class T>
   requires std::same_as<T, int> || std::same_as<T, double> || std::same_as<T, std::vector<double>>
   void field(std::string_view name, T& value, Range range, std::string_view sentence,
-             Effect effect = Effect::restart) {
+             std::optional<Effect> effect = {}) {
     add(name, &value, range, sentence, effect);
   }
   /// @}
@@ -106,11 +107,11 @@ class Collector {
   /// Declares an inner section: calls describe() for `members`.
   template <class T>
   void section(std::string_view name, T& members, std::string_view sentence,
-               Effect effect = Effect::restart) {
+               std::optional<Effect> effect = {}) {
     const auto outer = index_;
     const auto outer_effect = effect_;
     index_ = listing_.size();
-    if (effect == Effect::live) effect_ = effect;
+    if (effect) effect_ = *effect;
     listing_.push_back({path_of(outer, name), sentence, {}});
     describe(*this, members);
     index_ = outer;
@@ -123,15 +124,14 @@ class Collector {
     return outer.empty() ? std::string(name) : outer + "." + std::string(name);
   }
   void add(std::string_view name, Target target, Range range, std::string_view sentence,
-           Effect effect) {
-    if (effect_ == Effect::live) effect = effect_;
+           std::optional<Effect> effect) {
     listing_[index_].settings.push_back(
-        {path_of(index_, name), std::move(target), range, sentence, effect});
+        {path_of(index_, name), std::move(target), range, sentence, effect.value_or(effect_)});
   }
 
   Listing& listing_;
   std::size_t index_ = 0;            ///< of the section that is being described
-  Effect effect_ = Effect::restart;  ///< of all settings of that section
+  Effect effect_ = Effect::restart;  ///< of the settings of that section that say none
 };
 
 /// The settings that describe() declares for `declared`, which must outlive the listing.

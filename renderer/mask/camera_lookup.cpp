@@ -127,14 +127,22 @@ CameraLookup::CameraLookup(const calib::Calibration& calibration, bool smooth)
       calibration_(calibration),
       upper_(static_cast<std::size_t>(columns_)),
       lower_(upper_.size()) {
-  const bool is_coaxial = calibration.projector.parallax == glm::dvec3(0);
   table_.reserve(static_cast<std::size_t>(columns_) * rows_);
+  aim(calibration.projector);
+}
+
+void CameraLookup::aim(const calib::ProjectorModel& projector) {
+  calibration_.projector = projector;
+  const bool is_coaxial = projector.parallax == glm::dvec3(0);
+  const auto to_camera = glm::inverse(projector.from_camera);
+  table_.clear();
+  slopes_.clear();
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
-      const auto on_plane = calibration.projector.camera_pixel_of({kStep * column, kStep * row});
-      const auto camera = calibration.camera.distort(on_plane);
+      const auto on_plane = calib::mapped(to_camera, {kStep * column, kStep * row});
+      const auto camera = calibration_.camera.distort(on_plane);
       table_.push_back(glm::vec2(glm::clamp(camera, glm::dvec2(-kFar_px), glm::dvec2(kFar_px))));
-      if (!is_coaxial) slopes_.push_back(slope_at(calibration, on_plane));
+      if (!is_coaxial) slopes_.push_back(slope_at(calibration_, on_plane));
     }
 }
 

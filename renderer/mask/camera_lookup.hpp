@@ -12,7 +12,7 @@
 namespace handcast::renderer {
 
 /// The map from projector pixels to camera image pixels (homography, parallax and lens distortion),
-/// as a table that is computed once per calibration. One thread.
+/// as a table. One thread.
 class CameraLookup {
  public:
   /// Projector px between two entries of the table.
@@ -20,6 +20,9 @@ class CameraLookup {
 
   /// Computes the table. `smooth`: resample() interpolates instead of taking the nearest pixel.
   explicit CameraLookup(const calib::Calibration& calibration, bool smooth = false);
+
+  /// Computes the table for another projector with an image of the same size.
+  void aim(const calib::ProjectorModel& projector);
 
   /// Size of the table.
   /// @{

@@ -60,6 +60,12 @@ class HandMask {
     finder_.adjust(settings);
   }
 
+  /// Masks for another projector with an image of the same size from now on.
+  void aim(const calib::ProjectorModel& projector) {
+    calibration_.projector = projector;
+    lookup_.aim(projector);
+  }
+
   /// Finds the hands in an image. In the image of the last call, hands that have hardly moved are
   /// not searched again.
   void find(const TimedImage& camera, std::span<const Sought> hands);

@@ -88,6 +88,19 @@ void HandPipeline::adjust(const config::Cascade& settings) {
   motion.ladder.adjust(settings);
 }
 
+void HandPipeline::aim(const calib::ProjectorModel& projector) {
+  const auto handedness = [](const calib::ProjectorModel& model) {
+    return glm::determinant(model.from_camera) > 0;
+  };
+  const bool is_mirrored = handedness(projector) != handedness(calibration_.projector);
+  calibration_.projector = projector;
+  if (!is_mirrored) return;
+  // What was measured across the fingers has the other sign now.
+  auto& shape = states_.shape;
+  shape.fingers = FingerOutline(shape.surface.mesh());
+  shape.palm = PalmOutline(shape.surface.mesh());
+}
+
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
   if (!is_plausible(pose, calibration_.camera_from_tracker)) return;
   auto& [reports, motion, light, shape] = states_;

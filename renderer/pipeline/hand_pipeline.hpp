@@ -93,8 +93,11 @@ class HandPipeline {
                                    const config::Content& content, const config::Hand& hand,
                                    const calib::Calibration& calibration, LandmarkOracle oracle);
 
-  /// See Pipeline::adjust().
+  /// See Pipeline::adjust() and Pipeline::aim().
+  /// @{
   void adjust(const config::Cascade& settings);
+  void aim(const calib::ProjectorModel& projector);
+  /// @}
 
   /// Which hand it is.
   Side side() const { return side_; }

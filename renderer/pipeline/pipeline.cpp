@@ -61,6 +61,7 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
                    const calib::Calibration& calibration, HandPipeline left, HandPipeline right,
                    std::unique_ptr<Painter> painter)
     : settings_(settings),
+      projector_(calibration.projector),
       shading_(static_cast<float>(content.shading)),
       screen_{0, 0, calibration.projector.width_px, calibration.projector.height_px},
       both_{std::move(left), std::move(right)},
@@ -75,6 +76,12 @@ void Pipeline::adjust(const config::Cascade& cascade, const config::Content& con
   mask_.adjust(cascade.mask);
   late_.adjust(registration_of(cascade), cascade.filter);
   painter_.adjust(cascade.fill);
+}
+
+void Pipeline::aim(const glm::dmat3& pixels) {
+  const auto projector = projector_.moved(pixels);
+  for (auto& hand : both_) hand.aim(projector);
+  mask_.aim(projector);
 }
 
 void Pipeline::push(std::int64_t now_ns, const msg::HandPoses& reported) {

@@ -92,6 +92,10 @@ class Pipeline {
   /// begins with the next detection.
   void adjust(const config::Cascade& cascade, const config::Content& content);
 
+  /// Draws into other pixels from the next frame on: `pixels` maps those of the calibration to them
+  /// (a mirror, a shift). What was learned stays.
+  void aim(const glm::dmat3& pixels);
+
   /// Takes a message that arrived at `now_ns`. A message with an origin more than 50 ms later than
   /// that is dropped: all messages until its origin would count as older. So is a pose that is not
   /// plausible (is_plausible()).
@@ -184,6 +188,7 @@ class Pipeline {
   std::span<const FrameHand> frame_hands();
 
   config::Cascade settings_;
+  calib::ProjectorModel projector_;  ///< of the calibration
   float shading_;
   Rect screen_;
   HandSides sides_;

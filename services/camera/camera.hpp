@@ -44,6 +44,12 @@ class Camera {
   virtual bool sees_light() const { return false; }
   /// Takes the reader of projection.frames.
   virtual void watch_light(ipc::Reader<msg::Projection> /*projections*/) {}
+
+  /// Whether it uses settings that change while it is open, and uses those of `rig` from now on.
+  /// @{
+  virtual bool is_adjustable() const { return false; }
+  virtual void adjust(const config::Rig& /*rig*/) {}
+  /// @}
 };
 
 /// What a camera is opened with. It refers to the rig and its calibration.

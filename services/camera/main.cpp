@@ -67,8 +67,10 @@ static void run_camera(service::Context& context, Viewpoint at) {
   if (source->sees_light())
     source->watch_light(must(context.reader<msg::Projection>("projection.frames")));
 
+  const auto live = source->is_adjustable() ? must(context.live_settings()) : nullptr;
   context.ready();
   while (context.running()) {
+    service::pass_on(live.get(), *source);
     auto slot = frames.loan();
     if (!slot) {
       context.tolerate({Errc::timeout, name + ": all slots of its ring are held by readers"});

@@ -13,6 +13,8 @@
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/desk/cues/cues.hpp"
 #include "services/desk/gestures.hpp"
+#include "services/desk/knobs/knobs.hpp"
+#include "services/desk/lamp/lamp.hpp"
 #include "services/desk/midi/midi.hpp"
 #include "services/desk/osc/osc.hpp"
 #include "services/desk/page/page.hpp"
@@ -44,6 +46,8 @@ static std::vector<std::unique_ptr<desk::Surface>> open_surfaces(
   auto cues = must(desk::open_cues(rig, remembered / (rig.name + ".cue"), panel));
   desk::CueDeck* const deck = cues.get();
   add(std::move(cues));
+  add(must(desk::open_knobs(rig, panel)));
+  add(must(desk::open_lamp(rig, panel)));
   add(must(desk::open_osc(rig, calibration.camera, panel, deck)));
   auto midi = must(desk::open_midi(rig, remembered / (rig.name + ".midi.toml"), panel, deck));
   desk::MidiLearner* const learner = midi.get();
@@ -82,7 +86,7 @@ static void run_desk(service::Context& context) {
 
 /// What makes the panel another one, and what the surfaces read.
 static std::vector<std::string> settings_read() {
-  std::vector<std::string> names{"desk", "hand"};
+  std::vector<std::string> names{"desk", "hand", "projector.lamp"};
   config::Rig rig;
   for (const auto& section : config::list_settings(rig))
     for (const auto& setting : section.settings)

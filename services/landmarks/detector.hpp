@@ -30,6 +30,12 @@ class Detector {
   /// Errors: timeout; bad_data (this image cannot be used).
   virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints,
                                         Deadline deadline) = 0;
+
+  /// Whether it uses settings that change while it is open, and uses those of `rig` from now on.
+  /// @{
+  virtual bool is_adjustable() const { return false; }
+  virtual void adjust(const config::Rig& /*rig*/) {}
+  /// @}
 };
 
 /// What a detector is opened with. It refers to the rig and its calibration.

@@ -40,8 +40,10 @@ static void run_landmarks(service::Context& context, Viewpoint at) {
   landmarks::TrackerHints tracker(must(calib::camera_at(context.calibration(), at)));
   auto hands = must(context.writer<msg::Landmarks>(config::name_at(at, "landmarks.hands")));
 
+  const auto live = detector->is_adjustable() ? must(context.live_settings()) : nullptr;
   context.ready();
   while (context.running()) {
+    service::pass_on(live.get(), *detector);
     const auto frame = frames.latest(Deadline::in(50ms));
     if (!frame) {
       context.tolerate(frame.error());

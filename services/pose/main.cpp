@@ -113,9 +113,11 @@ static void run_pose(service::Context& context) {
   pose::CalibrationWatch watch(context.rig().pose.drift, context.calibration());
   pose::DriftLog drift_log;
 
+  const auto live = source->is_adjustable() ? must(context.live_settings()) : nullptr;
   context.ready();
   auto sampled_ns = now_ns();
   while (context.running()) {
+    service::pass_on(live.get(), *source);
     if (source->views() > 0)
       if (const auto passed = landmarks.pass_on(*source); !passed) {
         if (passed.error().code != Errc::timeout) context.tolerate(passed.error());

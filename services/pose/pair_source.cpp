@@ -84,6 +84,11 @@ class PairSource final : public PoseSource {
     first_->see(landmarks, view);
     second_->see(landmarks, view);
   }
+  bool is_adjustable() const override { return true; }
+  void adjust(const config::Rig& rig) override {
+    first_->adjust(rig);
+    second_->adjust(rig);
+  }
   bool depends_on_calibration() const override { return depends_on_calibration_; }
   joints::Conventions conventions() const override { return conventions_; }
   msg::TrackerFaults take_faults() override { return std::exchange(faults_, {}); }

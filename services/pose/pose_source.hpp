@@ -41,6 +41,12 @@ class PoseSource {
   /// True if the newest sample depends on the calibration of the camera.
   virtual bool depends_on_calibration() const { return needs_landmarks(); }
 
+  /// Whether it uses settings that change while it is open, and uses those of `rig` from now on.
+  /// @{
+  virtual bool is_adjustable() const { return false; }
+  virtual void adjust(const config::Rig& /*rig*/) {}
+  /// @}
+
   /// What the joints of the samples mean. Constant.
   virtual joints::Conventions conventions() const { return {}; }
   /// What the tracker did wrong since the last call, as far as it was watched.

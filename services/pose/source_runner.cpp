@@ -58,12 +58,14 @@ class SourceRunner::Work {
   std::optional<Result<SourceFacts>> opened(Deadline deadline);
   bool await_end();
   void see(const msg::Landmarks& landmarks, int view);
+  void adjust(const config::Rig& rig);
   std::string trouble();
   std::int64_t hung_ns() const;
   /// @}
 
  private:
   void open(const std::stop_token& stop);
+  void adjust_source();
   void sample_once();
   void close();
   bool show_landmarks(const std::stop_token& stop);
@@ -82,6 +84,8 @@ class SourceRunner::Work {
   std::condition_variable_any changed_;                         ///< new landmarks, an end
   std::array<std::optional<msg::Landmarks>, kMostViews> seen_;  ///< by view
   std::string trouble_;
+  std::shared_ptr<const config::Rig> rig_;     ///< the newest settings; null: those of its start
+  bool is_rig_new_ = false;                    ///< the source does not have them yet
   std::optional<Result<SourceFacts>> opened_;  ///< the first attempt
   bool has_ended_ = false;
 };
@@ -106,6 +110,7 @@ void SourceRunner::Work::open(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   trouble_ = opened ? "" : opened.error().what;
   if (opened) source_ = std::move(*opened);
+  is_rig_new_ = rig_ != nullptr;
   if (!opened_)
     opened_ = opened ? Result<SourceFacts>({source_->views(), source_->conventions()})
                      : tl::make_unexpected(opened.error());
@@ -136,7 +141,16 @@ bool SourceRunner::Work::show_landmarks(const std::stop_token& stop) {
   return is_new || !source_->needs_landmarks();
 }
 
+void SourceRunner::Work::adjust_source() {
+  std::unique_lock lock(mutex_);
+  if (!std::exchange(is_rig_new_, false)) return;
+  const auto rig = rig_;
+  lock.unlock();
+  source_->adjust(*rig);
+}
+
 void SourceRunner::Work::sample_once() {
+  adjust_source();
   PairSample sample{.from = from_};
   enter(patience_.call_ns);
   const auto sampled = source_->sample(sample.poses, Deadline::in(kTurn));
@@ -184,6 +198,13 @@ void SourceRunner::Work::see(const msg::Landmarks& landmarks, int view) {
   changed_.notify_all();
 }
 
+void SourceRunner::Work::adjust(const config::Rig& rig) {
+  auto copy = std::make_shared<const config::Rig>(rig);
+  const std::scoped_lock lock(mutex_);
+  rig_ = std::move(copy);
+  is_rig_new_ = true;
+}
+
 std::string SourceRunner::Work::trouble() {
   if (hung_ns() > 0)
     return fmt::format("{}: its software hangs: a call does not return", part_.name);
@@ -210,6 +231,7 @@ std::optional<Result<SourceFacts>> SourceRunner::opened(Deadline deadline) const
   return work_->opened(deadline);
 }
 void SourceRunner::see(const msg::Landmarks& landmarks, int view) { work_->see(landmarks, view); }
+void SourceRunner::adjust(const config::Rig& rig) { work_->adjust(rig); }
 std::string SourceRunner::trouble() const { return work_->trouble(); }
 std::int64_t SourceRunner::hung_ns() const { return work_->hung_ns(); }
 

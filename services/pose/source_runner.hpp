@@ -72,6 +72,8 @@ class SourceRunner {
   std::optional<Result<SourceFacts>> opened(Deadline deadline) const;
   /// Passes the landmarks of a view to the source, if it takes them. Any thread.
   void see(const msg::Landmarks& landmarks, int view);
+  /// Passes other settings to the source, also when it is opened again. Any thread.
+  void adjust(const config::Rig& rig);
   /// Why there are no samples now; empty if there are. Any thread.
   std::string trouble() const;
   /// How long the source has hung; 0: it does not. Any thread.

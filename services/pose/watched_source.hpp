@@ -23,6 +23,8 @@ class WatchedSource final : public PoseSource {
   int awaited_view() const override { return source_->awaited_view(); }
   void see(const msg::Landmarks& landmarks, int view) override { source_->see(landmarks, view); }
   bool depends_on_calibration() const override { return source_->depends_on_calibration(); }
+  bool is_adjustable() const override { return source_->is_adjustable(); }
+  void adjust(const config::Rig& rig) override { source_->adjust(rig); }
   joints::Conventions conventions() const override { return source_->conventions(); }
   msg::TrackerFaults take_faults() override { return std::exchange(faults_, {}); }
 

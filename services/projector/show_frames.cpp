@@ -27,7 +27,7 @@ void show_frames(service::Context& context, Show show) {
 
     const std::int64_t begin_ns = now_ns();
     const std::int64_t target_ns = horizon.target_ns(begin_ns);
-    const auto* picture = show.test_pictures.at(begin_ns, target_ns);
+    const auto* picture = show.test_pictures.at(begin_ns, target_ns, show.live.flip());
     const DelayMeter meter;
     const bool is_frozen = show.live.is_frozen() && has_frame && !picture;
     if (!is_frozen)

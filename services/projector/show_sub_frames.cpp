@@ -71,7 +71,7 @@ class SubFrameLoop {
     if (const auto delivered = show_.inputs.deliver(show_.pipeline, Deadline::now()); !delivered)
       context_.tolerate(delivered.error());
     const std::int64_t begin_ns = now_ns();
-    const auto* picture = show_.test_pictures.at(begin_ns, drawing.target_ns);
+    const auto* picture = show_.test_pictures.at(begin_ns, drawing.target_ns, show_.live.flip());
     const DelayMeter meter;
     if (!show_.live.is_frozen() || !has_frame_ || picture)
       frame_ = picture ? *picture

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 
+#include "config/sections/light.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "ipc/ring/reader.hpp"
 #include "renderer/pipeline/frame.hpp"
@@ -17,14 +18,17 @@ class TestPictures {
 
   /// The frame that shows the picture of this time, CLOCK_MONOTONIC, lit at `target_ns`; null if
   /// there is none. Valid until the next call. A picture of another size than the projector's is
-  /// left out.
-  const renderer::Frame* at(std::int64_t time_ns, std::int64_t target_ns);
+  /// left out. `flip`: it is shown so (light.flip), as a calibration is right with it.
+  const renderer::Frame* at(std::int64_t time_ns, std::int64_t target_ns,
+                            config::Flip flip = config::Flip::none);
 
  private:
   bool take_newest();
+  void mirror(config::Flip flip);
 
   ipc::Reader<msg::TestPicture> pictures_;
   renderer::Texture image_;
+  config::Flip flip_ = config::Flip::none;  ///< of image_
   renderer::Frame frame_;
   msg::StageMark mark_;        ///< of frame_
   std::int64_t until_ns_ = 0;  ///< when the picture in image_ has lasted long enough

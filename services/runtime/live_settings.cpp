@@ -26,10 +26,12 @@ std::unique_ptr<LiveRig> rig_of(const config::Rig& filed, const msg::LiveSetting
   return nullptr;
 }
 
-/// Not at the priority of the service: a frame must not wait for it.
+/// Below the priority of the service: a frame must not wait for it, however often settings change.
+/// (nice(2) is of one thread in Linux.)
 void lower_priority() {
   const sched_param none{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &none);
+  if (pthread_setschedparam(pthread_self(), SCHED_OTHER, &none) != 0 || ::nice(5) == -1)
+    log::debug("the priority of the thread for live settings cannot be lowered");
 }
 
 }  // namespace

@@ -45,4 +45,11 @@ class LiveSettings {
   std::jthread thread_;
 };
 
+/// Lets a back end use the newest live settings, if they have changed. `live`: null if it is not
+/// adjustable.
+template <class Adjustable>
+void pass_on(LiveSettings* live, Adjustable& backend) {
+  if (const auto changed = live ? live->take() : nullptr) backend.adjust(changed->rig);
+}
+
 }  // namespace handcast::service

@@ -40,6 +40,7 @@ constexpr std::array kVerbs{
     VerbEntry{"blackout", "Switches all light off, or on again.", run_blackout, Group::change},
     VerbEntry{"freeze", "Lets the light stay as it is, or go on.", run_freeze, Group::change},
     VerbEntry{"master", "Sets or fades the light as a whole.", run_master, Group::change},
+    VerbEntry{"lamp", "Turns the lamp of the projector on or off.", nullptr, Group::change},
     VerbEntry{"top", "Watches rings and services in the terminal.", run_top, Group::look},
     VerbEntry{"preview", "Shows what a rig sees and casts, in a window or as a picture.", nullptr,
               Group::look},

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -29,6 +28,7 @@
 #include "tests/bench/control_rig.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
+#include "tests/bench/process_time.hpp"
 #include "tests/bench/rings_transports.hpp"
 #include "tests/services/desk/page/http_client.hpp"
 
@@ -192,22 +192,6 @@ std::vector<double> picture_ages_ms(test::Wire& pictures, std::chrono::seconds s
     if (const auto origin = origins.of(*image)) ages_ms.push_back(ns_to_ms(came_ns - *origin));
   }
   return ages_ms;
-}
-
-/// The processor time that a process has used, s.
-double busy_seconds(pid_t pid) {
-  std::ifstream stat(fmt::format("/proc/{}/stat", pid));
-  std::string text;
-  std::getline(stat, text);
-  const auto fields = text.substr(text.rfind(')') + 2);
-  long ticks = 0;
-  std::size_t at = 0;
-  for (int field = 3; field <= 15 && at != fields.npos; ++field) {
-    const auto next = fields.find(' ', at);
-    if (field >= 14) ticks += std::stol(fields.substr(at, next - at));
-    at = next == fields.npos ? next : next + 1;
-  }
-  return static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 void note(std::vector<Goal>& goals, const char* way, const std::vector<double>& times_ms,

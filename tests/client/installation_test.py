@@ -28,7 +28,8 @@ PROGRAMS = {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks"
             "handcast-projector", "handcast-observer", "handcast-simulate", "handcast-sweep",
             "handcast-detect", "handcast-report", "handcast-chart", "handcast-devices", "handcast-calibration-page",
             "handcast-doctor", "handcast-init", "handcast-record", "handcast-calibrate", "handcast-template",
-            "handcast-content", "handcast-desk", "handcast-gallery", "handcast-try"}
+            "handcast-content", "handcast-desk", "handcast-gallery", "handcast-lamp",
+            "handcast-try"}
 OPTIONAL = {"handcast-dlp", "handcast-exporter", "handcast-preview", "handcast-study"}
 LINE = re.compile(r"frame (\d+) for ([\d.]+) ms:(?: image ([\d.]+) ms)?"
                   r"(?: pose ([\d.]+) ms)?(?: landmarks ([\d.]+) ms)? old")

@@ -44,7 +44,7 @@ inline void change(const Setting& setting) {
             *value =
                 (*value + setting.range.min) / 2 + (setting.range.max - setting.range.min) / 3e6;
           if constexpr (std::is_same_v<T, std::vector<double>>) {
-            if (setting.name() == "gravity") value->pop_back();  // always three numbers
+            if (!value->empty()) value->pop_back();  // it keeps its length
             value->push_back(setting.name() == "cores" ? 1 : 0.1);
           }
           if constexpr (std::is_same_v<T, std::vector<std::string>>)

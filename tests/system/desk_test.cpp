@@ -9,6 +9,9 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/control/rig_address.hpp"
+#include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/projection.hpp"
 #include "tests/system/running_rig.hpp"
 #include "tests/system/variable.hpp"
@@ -64,6 +67,29 @@ TEST_F(RigWithDesk, ChangesAreSeenAndOutliveTheProcessesThatReadThem) {
   ASSERT_EQ(handcast({"undo"}).exit_code, 0);
   EXPECT_TRUE(eventually([&] { return !is_dark(); }));
   EXPECT_EQ(changed(), "");
+}
+
+TEST_F(RigWithDesk, TheErrorsOfTheTwinsSensorsAreTurnedInEachService) {
+  const auto rig = up({"--set", "twin.motion=builtin:still", "--set", "landmarks.backend=twin"});
+  wait_until_light();
+  const Variable scope(control::kScopeVariable, scratch_.path().string());
+  auto poses = client::open_stream<msg::HandPoses>("twin", "pose.hands");
+  auto landmarks = client::open_stream<msg::Landmarks>("twin", "landmarks.hands");
+  auto frames = client::open_stream<msg::CameraFrame>("twin", "camera.frames");
+  ASSERT_TRUE(poses && landmarks && frames);
+  const auto hands_in = [](auto& stream) {
+    const auto next = stream.latest(Deadline::in(5s));
+    return next ? static_cast<int>((*next)->count) : -1;
+  };
+  EXPECT_TRUE(eventually([&] { return hands_in(*poses) > 0 && hands_in(*landmarks) > 0; }));
+  ASSERT_EQ(handcast({"set", "twin.tracker.dropout=1", "twin.detector.dropout=1"}).exit_code, 0);
+  EXPECT_TRUE(eventually([&] { return hands_in(*poses) == 0 && hands_in(*landmarks) == 0; }));
+  ASSERT_EQ(handcast({"set", "twin.tracker.dropout", "twin.image.lost=1"}).exit_code, 0);
+  EXPECT_TRUE(eventually([&] { return hands_in(*poses) > 0; }));
+  EXPECT_TRUE(eventually([&] { return !frames->latest(Deadline::in(500ms)).has_value(); }));
+  ASSERT_EQ(handcast({"undo"}).exit_code, 0);
+  EXPECT_TRUE(eventually([&] { return frames->latest(Deadline::in(500ms)).has_value(); }));
+  EXPECT_THAT(handcast({"set", "twin.tracker.rate_hz=50"}).log, HasSubstr("handcast reload"));
 }
 
 TEST_F(RigWithDesk, ABadChangeIsRefusedWithItsReasonAndChangesNothing) {

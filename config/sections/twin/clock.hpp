@@ -8,6 +8,8 @@ namespace handcast::config {
 struct TwinClock {
   double drift_ppm = 0;  ///< rate error
   double jitter_ms = 0;  ///< standard deviation of a stamp's error
+
+  bool operator==(const TwinClock&) const = default;
 };
 
 /// Declares the settings of a clock.

@@ -18,6 +18,8 @@ struct TwinDetector {
   double near_outliers = 0;
   double clock_skew_ms = 0;
   Fault lost, wrong_finger, merged;
+
+  bool operator==(const TwinDetector&) const = default;
 };
 
 template <class Visitor>

@@ -12,6 +12,7 @@ struct Fault {
   double at_s = 0;       ///< when it begins
   double lasting_s = 0;  ///< how long it lasts; 0: it never happens
 
+  bool operator==(const Fault&) const = default;
   /// True if the fault is present at this time.
   constexpr bool holds(double seconds) const {
     return seconds >= at_s && seconds < at_s + lasting_s;

@@ -34,6 +34,8 @@ struct TwinImage {
   bool object = false;
   /// The time in which dark, saturated, holes, covered, face and object apply.
   Fault fault{0, 1e6};
+
+  bool operator==(const TwinImage&) const = default;
 };
 
 template <class Visitor>

@@ -29,11 +29,14 @@ struct TwinTracker {
   double clock_skew_ms = 0;
   TwinClock clock;
   Fault frozen, decaying, lost, wrong_finger, merged, swapped;
+
+  bool operator==(const TwinTracker&) const = default;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, TwinTracker& tracker) {
-  visitor.field("rate_hz", tracker.rate_hz, between(1, 1000, "Hz"), "Samples per second.");
+  visitor.field("rate_hz", tracker.rate_hz, between(1, 1000, "Hz"), "Samples per second.",
+                Effect::restart);
   visitor.field("age_ms", tracker.age_ms, between(0, 500, "ms"),
                 "Mean age of a sample when it arrives.");
   visitor.field("age_sd_ms", tracker.age_sd_ms, between(0, 50, "ms"),

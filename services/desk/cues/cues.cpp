@@ -8,11 +8,13 @@
 #include <charconv>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/quote.hpp"
 #include "ipc/base/suggest.hpp"
 #include "services/desk/controls/complaints.hpp"
+#include "services/desk/controls/file_watch.hpp"
 #include "services/desk/cues/fades.hpp"
 #include "services/desk/cues/place_file.hpp"
 
@@ -51,8 +53,9 @@ class Deck final : public RunningCues {
  public:
   Deck(CueList list, std::string file, std::filesystem::path state_file, Panel& panel,
        WallClock clock)
-      : list_(std::move(list)),
+      : list_(std::make_shared<const CueList>(std::move(list))),
         file_(std::move(file)),
+        watch_(file_),
         state_file_(std::move(state_file)),
         panel_(panel),
         clock_(std::move(clock)),
@@ -82,14 +85,16 @@ class Deck final : public RunningCues {
   void look_for_triggers(const Scene& scene, double wall_before_s, double idle_before_s);
   template <class Fires>
   void start_triggered(Fires fires, bool may_be_current);
-  void start(int cue);
+  void start(int at);
   void fade();
   void keep();
   void resume();
+  void read_again();
+  bool go_to(std::string_view cue, bool is_faded);
   void publish();
   int after(int cue) const {
-    const int count = static_cast<int>(list_.cues.size());
-    return list_.loops ? (cue + 1) % count : std::min(cue + 1, count);
+    const int count = static_cast<int>(list_->cues.size());
+    return list_->loops ? (cue + 1) % count : std::min(cue + 1, count);
   }
   Result<void> change(const std::vector<std::string>& assignments) {
     if (assignments.empty()) return {};
@@ -98,15 +103,23 @@ class Deck final : public RunningCues {
     return set;
   }
 
-  const CueList list_;
+  const Cue& cue(int at) const { return list_->cues[static_cast<std::size_t>(at)]; }
+  int count() const { return static_cast<int>(list_->cues.size()); }
+  std::shared_ptr<const CueList> list() const {
+    const std::lock_guard lock(mutex_);
+    return list_;
+  }
+
+  std::shared_ptr<const CueList> list_;  ///< replaced by the main thread alone, under mutex_
   const std::string file_;
+  FileWatch watch_;
   const std::filesystem::path state_file_;
   Panel& panel_;
   WallClock clock_;
   Complaints complaints_{"cues"};
   Fades fades_;
   int current_ = -1, next_ = 0;
-  bool is_held_ = false;
+  bool is_held_ = false, has_new_names_ = false;
   double elapsed_s_ = 0;  ///< since the current cue was started, without the time that it was held
   double retry_s_ = 0;    ///< as elapsed_s_: a rig that does not answer is not asked before
   double wall_s_;         ///< of this turn
@@ -121,17 +134,18 @@ class Deck final : public RunningCues {
 };
 
 Result<void> Deck::jump(std::string_view cue) {
-  const auto found = std::ranges::find(list_.cues, cue, &Cue::name);
-  auto at = static_cast<int>(found - list_.cues.begin());
-  if (found == list_.cues.end()) {
+  const auto list = this->list();
+  const auto found = std::ranges::find(list->cues, cue, &Cue::name);
+  auto at = static_cast<int>(found - list->cues.begin());
+  if (found == list->cues.end()) {
     int number = 0;
     const auto [end, error] = std::from_chars(cue.data(), cue.data() + cue.size(), number);
     if (error != std::errc() || end != cue.data() + cue.size() || number < 1 ||
-        number > static_cast<int>(list_.cues.size())) {
+        number > static_cast<int>(list->cues.size())) {
       std::vector<std::string_view> names;
-      for (const auto& known : list_.cues) names.push_back(known.name);
+      for (const auto& known : list->cues) names.push_back(known.name);
       return fail(Errc::bad_config, fmt::format("there is no cue {}{}; there are {}", quote(cue),
-                                                suggest(cue, names), list_.cues.size()));
+                                                suggest(cue, names), list->cues.size()));
     }
     at = number - 1;
   }
@@ -144,6 +158,7 @@ void Deck::turn(const Scene& scene) {
   const double wall_before_s = std::exchange(wall_s_, clock_());
   const double idle_before_s = std::exchange(idle_s_, idle_s(scene));
   now_ns_ = scene.now_ns;
+  if (watch_.has_changed(now_ns_)) read_again();
   if (!is_held_) elapsed_s_ += step_s;
   std::vector<Command> commands;
   {
@@ -165,13 +180,13 @@ void Deck::obey(const Command& command) {
       return;
     case Command::Kind::go:
       if (std::exchange(is_held_, false)) return;
-      if (next_ < static_cast<int>(list_.cues.size())) start(next_);
+      if (next_ < count()) start(next_);
       return;
     case Command::Kind::back:
       if (current_ > 0) start(current_ - 1);
       return;
     case Command::Kind::jump:
-      start(command.cue);
+      if (command.cue < count()) start(command.cue);  // the list may be another one by now
       return;
     case Command::Kind::key:
       start_triggered(
@@ -187,12 +202,10 @@ void Deck::obey(const Command& command) {
 /// fires.
 template <class Fires>
 void Deck::start_triggered(Fires fires, bool may_be_current) {
-  const int count = static_cast<int>(list_.cues.size());
-  for (int i = 1; i <= count; ++i) {
-    const int cue = (current_ + i) % count;
-    if (cue == current_ && !may_be_current) continue;
-    if (std::ranges::any_of(list_.cues[static_cast<std::size_t>(cue)].triggers, fires))
-      return start(cue);
+  for (int i = 1; i <= count(); ++i) {
+    const int at = (current_ + i) % count();
+    if (at == current_ && !may_be_current) continue;
+    if (std::ranges::any_of(cue(at).triggers, fires)) return start(at);
   }
 }
 
@@ -218,20 +231,20 @@ void Deck::look_for_triggers(const Scene& scene, double wall_before_s, double id
                  std::fmod(time_s - trigger.seconds + kDay_s, kDay_s) < passed_s;
         },
         false);
-  if (next_ < static_cast<int>(list_.cues.size()))
-    for (const auto& trigger : list_.cues[static_cast<std::size_t>(next_)].triggers)
+  if (next_ < count())
+    for (const auto& trigger : cue(next_).triggers)
       if (trigger.kind == Kind::after && elapsed_s_ >= trigger.seconds) return start(next_);
 }
 
-void Deck::start(int cue) {
-  const auto& started = list_.cues[static_cast<std::size_t>(cue)];
-  current_ = cue;
-  next_ = after(cue);
+void Deck::start(int at) {
+  const auto& started = cue(at);
+  current_ = at;
+  next_ = after(at);
   is_held_ = false;
   elapsed_s_ = 0;
   retry_s_ = 0;
   started_s_ = wall_s_;
-  source_ = fmt::format("cue {} {}", cue + 1, quote(started.name));
+  source_ = fmt::format("cue {} {}", at + 1, quote(started.name));
   log::info("{} begins", source_);
   std::vector<std::string> switches;
   for (const auto& target : started.targets)
@@ -258,8 +271,8 @@ void Deck::fade() {
 
 void Deck::keep() {
   if (state_file_.empty()) return;
-  const auto& cue = list_.cues[static_cast<std::size_t>(current_)];
-  const auto written = write_place(state_file_, {file_, cue.name, started_s_, fades_.are_over()});
+  const auto written =
+      write_place(state_file_, {file_, cue(current_).name, started_s_, fades_.are_over()});
   if (!written) complaints_.add(now_ns_, written.error().what);
 }
 
@@ -269,31 +282,53 @@ void Deck::resume() {
   const auto kept = read_place(state_file_);
   if (!kept) return complaints_.add(now_ns(), kept.error().what);
   if (!*kept || (*kept)->list != file_) return;
-  const auto found = std::ranges::find(list_.cues, (*kept)->cue, &Cue::name);
-  if (found == list_.cues.end()) return;
-  current_ = static_cast<int>(found - list_.cues.begin());
-  next_ = after(current_);
-  source_ = fmt::format("cue {} {}", current_ + 1, quote(found->name));
   started_s_ = (*kept)->started_s;
   elapsed_s_ = std::max(wall_s_ - started_s_, 0.0);
-  if (!(*kept)->is_faded) {
-    elapsed_s_ = 0;
-    fades_.begin(*found, panel_.controls(), *panel_.values());
+  if (go_to((*kept)->cue, (*kept)->is_faded)) log::info("the cue list goes on at {}", source_);
+}
+
+/// Goes on in a cue that was started before; false if there is no such cue. Fades that were not
+/// over begin again.
+bool Deck::go_to(std::string_view name, bool is_faded) {
+  const auto found = std::ranges::find(list_->cues, name, &Cue::name);
+  if (found == list_->cues.end()) return false;
+  current_ = static_cast<int>(found - list_->cues.begin());
+  next_ = after(current_);
+  source_ = fmt::format("cue {} {}", current_ + 1, quote(found->name));
+  if (is_faded) return true;
+  elapsed_s_ = retry_s_ = 0;
+  fades_.begin(*found, panel_.controls(), *panel_.values());
+  return true;
+}
+
+/// Takes the list as the file has it now. One with faults changes nothing.
+void Deck::read_again() {
+  auto list = read_cues(file_, panel_.controls());
+  if (!list) return complaints_.add(now_ns_, list.error().what + "; the cue list stays as it was");
+  const auto name = current_ >= 0 ? cue(current_).name : "";
+  const bool is_faded = fades_.are_over();
+  fades_.stop();  // they refer to the old list
+  {
+    const std::lock_guard lock(mutex_);
+    list_ = std::make_shared<const CueList>(std::move(*list));
   }
-  log::info("the cue list goes on at {}", source_);
+  if (!go_to(name, is_faded)) {
+    next_ = std::clamp(current_, 0, count());
+    current_ = -1;
+  }
+  has_new_names_ = true;
+  log::info("the cue list was read again");
 }
 
 void Deck::publish() {
   double faded = 1;
-  if (!fades_.are_over())
-    faded =
-        std::min(elapsed_s_ / list_.cues[static_cast<std::size_t>(current_)].longest_fade_s(), 1.0);
+  if (!fades_.are_over()) faded = std::min(elapsed_s_ / cue(current_).longest_fade_s(), 1.0);
   // Only this thread replaces it.
-  if (place_ && place_->current == current_ && place_->next == next_ &&
-      place_->is_held == is_held_ && place_->faded == faded)
+  if (place_ && !std::exchange(has_new_names_, false) && place_->current == current_ &&
+      place_->next == next_ && place_->is_held == is_held_ && place_->faded == faded)
     return;
   auto place = std::make_shared<CuePlace>(CuePlace{{}, current_, next_, is_held_, faded});
-  for (const auto& cue : list_.cues) place->names.push_back(cue.name);
+  for (const auto& each : list_->cues) place->names.push_back(each.name);
   const std::lock_guard lock(mutex_);
   place_ = std::move(place);
 }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 
@@ -36,10 +38,15 @@ std::optional<double> read_time(std::string_view text) {
   return std::nullopt;
 }
 
+/// One of Gestures.
 bool is_event(std::string_view word) {
+  constexpr std::array<std::string_view, 6> kOfAHand{"appears", "leaves", "pinch",
+                                                     "fist",    "open",   "point"};
+  if (word == "touch") return true;
   const auto dot = word.find('.');
   const auto side = word.substr(0, dot);
-  return dot != word.npos && dot + 1 < word.size() && (side == "left" || side == "right");
+  return dot != word.npos && (side == "left" || side == "right") &&
+         std::ranges::find(kOfAHand, word.substr(dot + 1)) != kOfAHand.end();
 }
 
 }  // namespace
@@ -57,11 +64,13 @@ Result<Trigger> read_trigger(std::string_view text) {
     if (const auto seconds = read_number(rest))
       return Trigger{word == "idle" ? Kind::idle : Kind::after, "", *seconds};
   if (is_event(text)) return Trigger{Kind::event, std::string(text), 0};
-  return fail(Errc::bad_config,
-              fmt::format("{} starts no cue; write \"key g\", \"at 20:15\", \"left.appears\" or "
-                          "another event of a hand, \"idle 30\" (seconds without a hand), or "
-                          "\"after 5\" (seconds after the cue before it)",
-                          quote(text)));
+  return fail(
+      Errc::bad_config,
+      fmt::format("{} starts no cue; write \"key g\", \"at 20:15\", \"left.\" or \"right.\" "
+                  "with appears, leaves, pinch, fist, open or point, \"touch\" (of the "
+                  "other hand), \"idle 30\" (seconds without a hand), or \"after 5\" "
+                  "(seconds after the cue before it)",
+                  quote(text)));
 }
 
 }  // namespace handcast::desk::cues

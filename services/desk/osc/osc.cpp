@@ -10,6 +10,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "services/desk/osc/description.hpp"
+#include "services/desk/osc/figures.hpp"
 #include "services/desk/osc/inbox.hpp"
 #include "services/desk/osc/outbox.hpp"
 #include "services/desk/osc/query_server.hpp"
@@ -21,7 +22,11 @@ namespace osc {
 namespace {
 
 constexpr std::int64_t kPause_ns = 4'000'000;  ///< between two reads of what came in
-constexpr std::size_t kMostReads = 32;         ///< of DatagramReader::kBatch, at one time
+/// Between two changes: each makes every process of the rig read its settings again.
+constexpr std::int64_t kChangePause_ns = 16'000'000;
+/// Reads of DatagramReader::kBatch at one time: 32,000 messages a second, more than any controller
+/// sends. The rest of a flood is lost in the socket, which costs the rig no time.
+constexpr std::size_t kMostReads = 4;
 constexpr std::int64_t kLongestWait_ns = 1'000'000'000;
 constexpr std::size_t kMostReceivers = 16;
 
@@ -69,7 +74,10 @@ class Receiver {
         is_query_waiting_ = server_.turn(now.mono_ns);
         next_read_ns_ = now.mono_ns + kPause_ns;
       }
-      if (inbox_.has_work()) inbox_.apply(panel_, cues_, now);
+      if (inbox_.has_work() && now.mono_ns >= next_change_ns_) {
+        inbox_.apply(panel_, cues_, now);
+        next_change_ns_ = now.mono_ns + kChangePause_ns;
+      }
       if (inbox_.takes_refresh()) is_refresh_.store(true);
     }
   }
@@ -80,6 +88,7 @@ class Receiver {
     const bool pauses = now < next_read_ns_;
     auto until_ns = pauses ? next_read_ns_ : now + (is_query_waiting_ ? 0 : kLongestWait_ns);
     if (const auto due_ns = inbox_.next_due_ns()) until_ns = std::min(until_ns, *due_ns);
+    if (inbox_.has_work()) until_ns = std::min(until_ns, next_change_ns_);
     waits_.assign(1, {stop_.get(), POLLIN, 0});
     if (!pauses) {
       waits_.push_back({socket_.get(), POLLIN, 0});
@@ -113,7 +122,7 @@ class Receiver {
   Inbox inbox_;
   Host host_;
   QueryServer server_;
-  std::int64_t next_read_ns_ = 0;
+  std::int64_t next_read_ns_ = 0, next_change_ns_ = 0;
   bool is_query_waiting_ = false;
   std::vector<pollfd> waits_;
   std::atomic<bool> is_stopping_ = false, is_refresh_ = false;
@@ -127,10 +136,14 @@ class OscSurface final : public Surface {
              Sockets sockets)
       : panel_(panel),
         addresses_(panel.controls()),
-        outbox_(addresses_, rig.desk.osc.rate_hz),
+        outbox_(rig.desk.osc.rate_hz),
         tuio_(camera),
         sockets_(std::move(sockets)) {
-    for (const auto& socket : sockets_.send) send_.push_back(socket.get());
+    for (const auto& socket : sockets_.send) {
+      send_.push_back(socket.get());
+      tellers_.emplace_back(addresses_, peer_of(socket));
+    }
+    if (!send_.empty()) figures_ = std::make_unique<FigureFeed>(rig.name);
     for (const auto& socket : sockets_.tuio) send_tuio_.push_back(socket.get());
     if (sockets_.listen)
       receiver_ = std::make_unique<Receiver>(rig, addresses_, panel, cues,
@@ -138,17 +151,30 @@ class OscSurface final : public Surface {
   }
 
   void turn(const Scene& scene) override {
-    if (receiver_ && receiver_->takes_refresh()) outbox_.refresh();
-    if (!send_.empty()) send_all(outbox_.packets(scene, *panel_.values()), send_);
+    const bool is_refresh = receiver_ && receiver_->takes_refresh();
+    if (!send_.empty()) send_all(packets(scene), send_);
+    for (std::size_t i = 0; i < send_.size(); ++i) {
+      if (is_refresh) tellers_[i].refresh();
+      send_all(tellers_[i].packets(*panel_.values(), scene.now_ns), {&send_[i], 1});
+    }
     if (send_tuio_.empty()) return;
     if (auto bundle = tuio_.bundle(scene); !bundle.empty())
       send_all({std::move(bundle)}, send_tuio_);
   }
 
  private:
+  /// What all receivers are told.
+  std::vector<std::string> packets(const Scene& scene) {
+    auto packets = outbox_.packets(scene);
+    if (auto figures = figures_->take(); !figures.empty()) packets.push_back(std::move(figures));
+    return packets;
+  }
+
   Panel& panel_;
   Addresses addresses_;
   Outbox outbox_;
+  std::vector<ValueTeller> tellers_;  ///< by receiver
+  std::unique_ptr<FigureFeed> figures_;
   Tuio tuio_;
   Sockets sockets_;
   std::vector<int> send_, send_tuio_;

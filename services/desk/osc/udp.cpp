@@ -98,6 +98,17 @@ Result<UniqueFd> connect_socket(std::string_view address, std::string_view setti
   return socket;
 }
 
+std::string peer_of(const UniqueFd& socket) {
+  sockaddr_storage peer{};
+  socklen_t size = sizeof peer;
+  std::array<char, 64> host{};
+  auto* const generic = reinterpret_cast<sockaddr*>(&peer);
+  if (::getpeername(socket.get(), generic, &size) != 0 ||
+      ::getnameinfo(generic, size, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0)
+    return "";
+  return host.data();
+}
+
 const std::vector<Datagram>& DatagramReader::read(const UniqueFd& socket) {
   std::array<mmsghdr, kBatch> headers{};
   std::array<iovec, kBatch> places{};
@@ -111,8 +122,13 @@ const std::vector<Datagram>& DatagramReader::read(const UniqueFd& socket) {
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     auto& name = names_[at];
-    ::getnameinfo(reinterpret_cast<const sockaddr*>(&senders[at]), headers[at].msg_hdr.msg_namelen,
-                  name.data(), name.size(), nullptr, 0, NI_NUMERICHOST);
+    const auto size = headers[at].msg_hdr.msg_namelen;
+    // Most come from one sender.
+    if (std::memcmp(&senders[at], &senders_[at], size) != 0) {
+      senders_[at] = senders[at];
+      ::getnameinfo(reinterpret_cast<const sockaddr*>(&senders[at]), size, name.data(), name.size(),
+                    nullptr, 0, NI_NUMERICHOST);
+    }
     datagrams_.push_back({Bytes(memory_[at]).first(headers[at].msg_len), name.data(),
                           (headers[at].msg_hdr.msg_flags & MSG_TRUNC) == 0});
   }

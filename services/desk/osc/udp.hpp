@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <sys/socket.h>
+
 #include <array>
 #include <cstdint>
 #include <string>
@@ -22,6 +24,8 @@ Result<UniqueFd> bind_socket(std::string_view address, Transport transport,
                              std::string_view setting, int port = -1);
 /// The port that a socket is bound to.
 int port_of(const UniqueFd& socket);
+/// The host at the other end of a connected socket: "10.0.0.7"; "" if it has none.
+std::string peer_of(const UniqueFd& socket);
 /// A UDP socket that sends to an address. Errors: as bind_socket().
 Result<UniqueFd> connect_socket(std::string_view address, std::string_view setting);
 
@@ -46,6 +50,7 @@ class DatagramReader {
  private:
   std::vector<std::array<std::uint8_t, kMostDatagram>> memory_{kBatch};
   std::array<std::array<char, 64>, kBatch> names_{};
+  std::array<sockaddr_storage, kBatch> senders_{};  ///< those that names_ are of
   std::vector<Datagram> datagrams_;
 };
 

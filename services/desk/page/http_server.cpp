@@ -13,11 +13,12 @@
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <unordered_map>
 
 #include "ipc/base/clock.hpp"
-#include "services/desk/page/low_priority.hpp"
+#include "services/desk/base/low_priority.hpp"
 
 namespace handcast::desk {
 namespace {
@@ -116,6 +117,34 @@ Result<sockaddr_in> socket_address(const std::string& address, std::uint16_t por
 
 }  // namespace
 
+/// Counts how often each client connects. One thread.
+class Door {
+ public:
+  explicit Door(const HttpLimits& limits)
+      : most_(limits.connections_at_once), hz_(limits.connections_hz) {}
+
+  bool lets_in(const sockaddr* client, std::int64_t now_ns) {
+    if (client->sa_family != AF_INET) return true;  // it listens at addresses of IPv4
+    if (visitors_.size() > kMostVisitors) visitors_.clear();
+    const auto address = reinterpret_cast<const sockaddr_in*>(client)->sin_addr.s_addr;
+    auto& [left, at_ns] = visitors_.try_emplace(address, Visitor{most_, now_ns}).first->second;
+    left = std::min(most_, left + hz_ * ns_to_seconds(now_ns - at_ns));
+    at_ns = now_ns;
+    if (left < 1) return false;
+    left -= 1;
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kMostVisitors = 1024;
+  struct Visitor {
+    double left;
+    std::int64_t at_ns;
+  };
+  double most_, hz_;
+  std::unordered_map<in_addr_t, Visitor> visitors_;
+};
+
 struct HttpServer::Impl {
   struct Connection {
     int socket = -1;
@@ -128,6 +157,7 @@ struct HttpServer::Impl {
   HttpLimits limits;
   TlsKeys tls;
   std::atomic<bool> is_closing = false;
+  std::optional<Door> door;  ///< of the thread that accepts
   MHD_Daemon* daemon = nullptr;
   std::mutex mutex;
   std::condition_variable wake;
@@ -256,7 +286,12 @@ struct HttpServer::Impl {
     if (impl.is_closing) ::shutdown(info->connect_fd, SHUT_RDWR);
   }
 
+  static MHD_Result on_arrival(void* self, const sockaddr* client, socklen_t) {
+    return static_cast<Impl*>(self)->door->lets_in(client, now_ns()) ? MHD_YES : MHD_NO;
+  }
+
   void start(const sockaddr_in& address) {
+    door.emplace(limits);
     const bool is_encrypted = !tls.certificate.empty();
     const std::array<MHD_OptionItem, 4> keys{
         {{MHD_OPTION_HTTPS_MEM_CERT, 0, tls.certificate.data()},
@@ -266,7 +301,7 @@ struct HttpServer::Impl {
     daemon = MHD_start_daemon(
         MHD_USE_THREAD_PER_CONNECTION | MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_POLL |
             (is_encrypted ? MHD_USE_TLS : 0),
-        0, nullptr, nullptr, on_request, this, MHD_OPTION_SOCK_ADDR, &address,
+        0, on_arrival, this, on_request, this, MHD_OPTION_SOCK_ADDR, &address,
         MHD_OPTION_CONNECTION_LIMIT, limits.connections, MHD_OPTION_CONNECTION_TIMEOUT,
         limits.stall_s, MHD_OPTION_CONNECTION_MEMORY_LIMIT, limits.header_bytes,
         MHD_OPTION_THREAD_STACK_SIZE, std::size_t{256 << 10}, MHD_OPTION_NOTIFY_COMPLETED,

@@ -52,7 +52,12 @@ struct HttpLimits {
   std::size_t body_bytes = 64 << 10;        ///< of a request; a larger one gets 413
   std::int64_t request_ns = 5'000'000'000;  ///< until a request has come whole
   std::int64_t answer_ns = 20'000'000'000;  ///< until an answer, but a stream, was taken
-  unsigned stall_s = 10;                    ///< a client that takes nothing for so long is left
+  /// One client may connect so often at once, and so often a second from then on; more is closed
+  /// before it costs a thread.
+  /// @{
+  double connections_at_once = 500, connections_hz = 200;
+  /// @}
+  unsigned stall_s = 10;  ///< a client that takes nothing for so long is left
 };
 
 /// PEM texts of a server that encrypts; empty: it does not.

@@ -14,7 +14,7 @@
 #include "ipc/msg/projection.hpp"
 #include "renderer/media/jpeg.hpp"
 #include "services/desk/page/json_text.hpp"
-#include "services/desk/page/low_priority.hpp"
+#include "services/desk/base/low_priority.hpp"
 
 namespace handcast::desk {
 namespace {

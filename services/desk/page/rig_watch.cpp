@@ -13,8 +13,8 @@
 #include "ipc/daemon/contract.hpp"
 #include "ipc/msg/content_state.hpp"
 #include "ipc/msg/stage_mark.hpp"
+#include "services/desk/base/low_priority.hpp"
 #include "services/desk/page/json_text.hpp"
-#include "services/desk/page/low_priority.hpp"
 
 namespace handcast::desk {
 namespace {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "calib/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
@@ -94,6 +95,17 @@ class RigTwin final : public Twin {
         detector_(rig.twin.detector, view.seed, view.truth.model, motion_->shape()),
         settings_(rig.twin) {}
 
+  void adjust(const config::Twin& changed) override {
+    if (std::exchange(settings_.tracker, changed.tracker) != changed.tracker)
+      tracker_ = {changed.tracker, settings_.seed, geometry_.calibration(), motion_->shape()};
+    if (std::exchange(settings_.detector, changed.detector) != changed.detector)
+      detector_ = {changed.detector, view_.seed, view_.truth.model, motion_->shape()};
+    if (std::exchange(settings_.image, changed.image) == changed.image) return;
+    camera_ = {view_.settings, settings_};
+    scene_.reset();
+    if (board_) place_board();
+  }
+
   std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const override {
     if (side == absent_ || settings_.prop.kind != config::TwinPropKind::none) return std::nullopt;
     return motion_->at(side, ns_to_seconds(time_ns));
@@ -158,8 +170,8 @@ class RigTwin final : public Twin {
       return fail(Errc::bad_config,
                   "twin: the rig has one camera; set twin.prop.views = \"first\"");
     if (auto usable = check(picture); !usable) return usable;
-    board_.emplace(settings_, geometry_, SceneView{view_.truth.model, view_.from_first, view_.seed},
-                   picture);
+    picture_ = picture;
+    place_board();
     return {};
   }
 
@@ -196,6 +208,11 @@ class RigTwin final : public Twin {
     return frames;
   }
 
+  void place_board() {
+    board_.emplace(settings_, geometry_, SceneView{view_.truth.model, view_.from_first, view_.seed},
+                   picture_);
+  }
+
   CameraScene& scene() const {
     if (scene_) return *scene_;
     scene_.emplace(settings_.image, view_.seed, view_.truth);
@@ -214,6 +231,7 @@ class RigTwin final : public Twin {
   DetectorModel detector_;
   config::Twin settings_;
   mutable std::optional<CameraScene> scene_;  ///< made for the first image
+  FlatPicture picture_;                       ///< of the board
   mutable std::optional<BoardScene> board_;   ///< empty without the picture of a board
 };
 

@@ -35,6 +35,10 @@ class Twin {
                                               config::Viewpoint at = config::Viewpoint::first);
   virtual ~Twin() = default;
 
+  /// Gives the sensors other errors from now on: `twin.tracker`, but its rate, `twin.detector` and
+  /// `twin.image`. The world and its motion stay.
+  virtual void adjust(const config::Twin& settings) = 0;
+
   /// The true joints of one hand in tracker space; empty if there is no such hand at that time, and
   /// always if `twin.prop` replaces the hands.
   virtual std::optional<JointFrames> joints(Side side, std::int64_t time_ns) const = 0;

@@ -11,6 +11,7 @@
 #include "ipc/control/rig_address.hpp"
 #include "services/tools/doctor/devices.hpp"
 #include "services/tools/doctor/display.hpp"
+#include "services/tools/doctor/lamp.hpp"
 #include "services/tools/doctor/live.hpp"
 #include "services/tools/doctor/machine.hpp"
 #include "services/tools/doctor/pauses.hpp"
@@ -56,7 +57,8 @@ std::vector<Finding> examine(const Options& options) {
   for (auto more :
        {examine_start(options.file, options.settings), rigs_of_others(), examine_machine(*rig),
         std::vector{examine_real_time(*rig)}, examine_pauses(*rig, asking), examine_display(*rig),
-        examine_devices(*rig, asking), examine_tracker(*rig, asking), findings_of(std::move(live))})
+        examine_devices(*rig, asking), examine_lamp(*rig), examine_tracker(*rig, asking),
+        findings_of(std::move(live))})
     std::move(more.begin(), more.end(), std::back_inserter(findings));
   return findings;
 }

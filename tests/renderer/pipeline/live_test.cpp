@@ -106,6 +106,62 @@ TEST(LiveSettings, AChangeInTheMiddleKeepsWhatWasLearned) {
   EXPECT_TRUE(play(*pipeline, 150 * kMs) == play(*other, 150 * kMs));
 }
 
+/// A mirror of left and right in a picture of 1024 px, after a shift.
+glm::dmat3 mirrored_and_shifted(double x_px, double y_px) {
+  const glm::dmat3 shift(1, 0, 0, 0, 1, 0, x_px, y_px, 1), mirror(-1, 0, 0, 0, 1, 0, 1023, 0, 1);
+  return mirror * shift;
+}
+
+TEST(LiveSettings, APipelineThatIsAimedDrawsAsOneThatIsCalibratedSo) {
+  for (const auto& pixels : {mirrored_and_shifted(0, 0), mirrored_and_shifted(3.25, -7.5)}) {
+    for (const double aside : {0., 4000.}) {
+      auto calibration = rig_above_hand();
+      calibration.projector.parallax = {aside / 100, 0, 0};
+      auto aimed = make_pipeline({}, calibration);
+      aimed->aim(pixels);
+      auto moved = calibration;
+      moved.projector = moved.projector.moved(pixels);
+      const auto light = play(*aimed);
+      EXPECT_TRUE(light == play(*make_pipeline({}, moved)));
+      EXPECT_FALSE(light == play(*make_pipeline({}, calibration)));
+    }
+  }
+}
+
+TEST(LiveSettings, APictureIsMirroredAndShiftedAndBackAgain) {
+  auto pipeline = make_pipeline(cascade(config::CorrectMethod::vertices, config::FillMethod::none));
+  feed_still(*pipeline, {pose_of(Side::right)});
+  const auto draw = [&](Image<std::uint32_t>& picture) {
+    picture = Image<std::uint32_t>(1024, 768);
+    const auto frame = pipeline->render(110 * kMs, 110 * kMs, {});
+    for (int y = 0; y < 768; ++y)
+      for (int x = 0; x < 1024; ++x) picture.at(x, y) = lit(frame, x, y);
+    return lit_pixels(frame);
+  };
+  Image<std::uint32_t> plain, aimed, again;
+  const int all_px = draw(plain);
+  pipeline->aim(mirrored_and_shifted(5, 2));
+  draw(aimed);
+  int wrong_px = 0;
+  for (int y = 2; y < 768; ++y)
+    for (int x = 5; x < 1024; ++x) wrong_px += aimed.at(1023 - x, y) != plain.at(x - 5, y - 2);
+  EXPECT_LT(wrong_px, all_px / 200) << "but for rounding at edges";
+  pipeline->aim(glm::dmat3(1));
+  draw(again);
+  EXPECT_TRUE(std::ranges::equal(again.pixels(), plain.pixels()));
+}
+
+TEST(LiveSettings, DarkAreasStayWhereTheyAreInAPictureThatIsMirrored) {
+  auto pipeline = make_pipeline();
+  feed_still(*pipeline, {pose_of(Side::right)});
+  const Rect dark{0, 0, 512, 768};
+  pipeline->keep_dark({dark});
+  pipeline->aim(mirrored_and_shifted(0, 0));
+  const auto frame = pipeline->render(110 * kMs, 110 * kMs, {});
+  EXPECT_EQ(lit_pixels(frame, dark), 0);
+  EXPECT_GT(lit_pixels(frame), 0);
+}
+
 TEST(LiveSettings, DarkAreasStayDark) {
   auto pipeline = make_pipeline();
   feed_still(*pipeline, {pose_of(Side::right)});

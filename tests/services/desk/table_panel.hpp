@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/sections/cascade.hpp"
+#include "config/sections/light.hpp"
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
 #include "services/desk/base/panel.hpp"
@@ -23,6 +24,7 @@ struct Turned {
   int cells = 8;
   bool blackout = false, freeze = false;
   double master = 1;
+  config::Lamp lamp = config::Lamp::unchanged;
   std::vector<std::string> keep_out;
   std::string left = "builtin:atlas";
   std::string transition = "fade";
@@ -44,6 +46,7 @@ inline config::Listing list_turned(Turned& turned) {
   add("light.blackout", &turned.blackout, {}, "No light at all.");
   add("light.freeze", &turned.freeze, {}, "The light stays as it is.");
   add("light.master", &turned.master, between(0, 1), "Share of the brightness.");
+  add("light.lamp", config::ChoiceTarget::of(turned.lamp), {}, "What the lamp is told.");
   add("light.keep_out", &turned.keep_out, {}, "Areas that stay dark.");
   add("content.left", &turned.left, {}, "What is on the left hand.");
   add("content.transition", &turned.transition, {}, "How one content becomes another.");

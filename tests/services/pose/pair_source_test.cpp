@@ -23,6 +23,7 @@ struct Behaviour {
   std::atomic<bool> is_lost{false}, is_absent{false}, has_hand{true};
   std::atomic<bool> hangs{false}, hangs_at_open{false};  ///< until it is false again
   std::atomic<int> period_ms{5}, opened{0}, seen{0};
+  std::atomic<double> noise_mm{0};  ///< of the settings that it was adjusted to
 };
 
 /// A call that does not return for as long as it hangs.
@@ -49,6 +50,7 @@ class StandIn final : public PoseSource {
   }
   int views() const override { return behaviour_->needs_landmarks ? 1 : 0; }
   void see(const msg::Landmarks& /*landmarks*/, int /*view*/) override { ++behaviour_->seen; }
+  void adjust(const config::Rig& rig) override { behaviour_->noise_mm = rig.twin.tracker.noise_mm; }
 
  private:
   std::shared_ptr<Behaviour> behaviour_;
@@ -125,6 +127,19 @@ TEST_F(Pair, ASourceThatIsLostIsReplacedAndOpenedAgain) {
   first_->is_absent = false;
   EXPECT_TRUE(reaches(*source, 0.1f));
   EXPECT_EQ(first_->opened, 2);
+}
+
+TEST_F(Pair, BothAreAdjustedAlsoOneThatIsOpenedAgain) {
+  first_->is_absent = true;
+  const auto source = open();
+  config::Rig rig;
+  rig.twin.tracker.noise_mm = 7;
+  source->adjust(rig);
+  EXPECT_TRUE(reaches(*source, 0.11f));
+  EXPECT_EQ(second_->noise_mm, 7);
+  first_->is_absent = false;
+  EXPECT_TRUE(reaches(*source, 0.1f));
+  EXPECT_EQ(first_->noise_mm, 7);
 }
 
 TEST_F(Pair, ASourceThatIsNotThereAtTheStartIsOpenedLater) {

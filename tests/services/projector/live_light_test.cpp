@@ -61,5 +61,15 @@ TEST_F(LiveLightTest, AProcessThatIsStartedLaterHasThemFromTheStart) {
       << "values that do not fit to another file are left out";
 }
 
+TEST_F(LiveLightTest, ThePictureIsShiftedAndThenMirrored) {
+  config::Light light{.flip = config::Flip::both, .shift_px = {2, -3}};
+  const auto at = calib::mapped(placement(light, 1024, 768), {10, 20});
+  EXPECT_EQ(at, glm::dvec2(1023 - 12, 767 - 17));
+  light.flip = config::Flip::none;
+  EXPECT_EQ(calib::mapped(placement(light, 1024, 768), {10, 20}), glm::dvec2(12, 17));
+  set({"light.flip=horizontal", "light.shift_px=[0.5, 0]"});
+  EXPECT_EQ(light_.flip(), config::Flip::horizontal);
+}
+
 }  // namespace
 }  // namespace handcast::projector

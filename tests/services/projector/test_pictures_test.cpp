@@ -72,6 +72,24 @@ TEST_F(TestPicturesTest, TheNewestPictureIsShown) {
   EXPECT_EQ(pictures_.at(now_ns(), kTarget_ns)->colour.at(0, 0), 0xff808080u);
 }
 
+TEST_F(TestPicturesTest, APictureIsMirroredAsTheLightIs) {
+  auto slot = writer_.loan();
+  slot->header.frame_id = 1;
+  slot->width_px = kWidth_px;
+  slot->height_px = kHeight_px;
+  std::fill_n(slot->levels(), kWidth_px * kHeight_px, 0x40);
+  slot->levels()[0] = 0xff;
+  writer_.publish(std::move(slot));
+  const auto bright = [&](config::Flip flip, int x, int y) {
+    return (pictures_.at(now_ns(), kTarget_ns, flip)->colour.at(x, y) & 255) == 0xff;
+  };
+  EXPECT_TRUE(bright(config::Flip::none, 0, 0));
+  EXPECT_TRUE(bright(config::Flip::horizontal, kWidth_px - 1, 0));
+  EXPECT_TRUE(bright(config::Flip::vertical, 0, kHeight_px - 1));
+  EXPECT_TRUE(bright(config::Flip::both, kWidth_px - 1, kHeight_px - 1));
+  EXPECT_TRUE(bright(config::Flip::none, 0, 0)) << "the same picture as before";
+}
+
 TEST_F(TestPicturesTest, APictureOfAnotherSizeIsLeftOut) {
   publish(5, 0x40, kWidth_px + 1);
   EXPECT_EQ(pictures_.at(now_ns(), kTarget_ns), nullptr);

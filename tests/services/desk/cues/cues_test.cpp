@@ -339,5 +339,51 @@ TEST_F(Cues, ARigThatRefusesDoesNotStopTheList) {
   EXPECT_EQ(panel.value("light.master"), "0");
 }
 
+TEST_F(Cues, AListThatIsWrittenAgainIsReadAgainInItsPlace) {
+  open("[[cue]]\nname = \"A\"\n[[cue]]\nname = \"B\"\nset.light.master = 0.5\n");
+  const auto write = [this](const std::string& toml) {
+    std::ofstream(rig.desk.cues) << toml;
+    pass(2);
+  };
+  ASSERT_TRUE(cues->jump("B"));
+  pass(1);
+  write("[[cue]]\nname = \"B\"\nset.light.mastr = 0.2\n");
+  EXPECT_THAT(cues->place()->names, ElementsAre("A", "B")) << "one with faults changes nothing";
+  write(
+      "[[cue]]\nname = \"New\"\n[[cue]]\nname = \"A\"\n[[cue]]\nname = \"B\"\n"
+      "[[cue]]\nname = \"C\"\nset.light.master = 0.25\n");
+  EXPECT_THAT(cues->place()->names, ElementsAre("New", "A", "B", "C"));
+  EXPECT_EQ(current(), 2);
+  EXPECT_EQ(panel.value("light.master"), "0.5") << "nothing starts by itself";
+  cues->go();
+  pass(0.1);
+  EXPECT_EQ(panel.value("light.master"), "0.25");
+  EXPECT_TRUE(cues->jump("New"));
+}
+
+TEST_F(Cues, ACueThatIsGoneFromTheListIsFollowedByTheOneInItsPlace) {
+  open(
+      "[[cue]]\nname = \"A\"\n[[cue]]\nname = \"B\"\nfade_s = 60\nset.light.master = 0\n"
+      "[[cue]]\nname = \"C\"\n");
+  ASSERT_TRUE(cues->jump("B"));
+  pass(1);
+  std::ofstream(rig.desk.cues) << "[[cue]]\nname = \"A\"\n[[cue]]\nname = \"C\"\n";
+  pass(2);
+  EXPECT_EQ(current(), -1);
+  EXPECT_EQ(cues->place()->next, 1);
+  const auto value = panel.value("light.master");
+  pass(1);
+  EXPECT_EQ(panel.value("light.master"), value) << "its fade has ended";
+}
+
+TEST_F(Cues, AFadeGoesOnInAListThatIsReadAgain) {
+  open("[[cue]]\nname = \"A\"\nfade_s = 10\nset.light.master = 0\n");
+  cues->go();
+  pass(1);
+  std::ofstream(rig.desk.cues) << "[[cue]]\nname = \"A\"\nfade_s = 2\nset.light.master = 0.4\n";
+  pass(5);
+  EXPECT_EQ(panel.value("light.master"), "0.4");
+}
+
 }  // namespace
 }  // namespace handcast::desk

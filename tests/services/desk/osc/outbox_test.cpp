@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/desk/osc/description.hpp"
+#include "services/desk/osc/figures.hpp"
 #include "services/desk/osc/tuio.hpp"
 #include "tests/services/desk/osc/packets.hpp"
 #include "tests/services/desk/table_panel.hpp"
@@ -53,60 +54,85 @@ Scene scene_with_left_hand(std::int64_t now_ns) {
   return scene;
 }
 
-TEST(OscOutbox, TheFirstTurnTellsAllValuesAndLaterOnesTheChanges) {
+TEST(OscValues, TheFirstTurnTellsAllAndLaterOnesTheChanges) {
   test::TablePanel panel;
   const Addresses addresses(panel.controls());
-  Outbox outbox(addresses, 60);
-  const auto all = print_all(outbox.packets({}, *panel.values()));
+  ValueTeller teller(addresses, "10.0.0.7");
+  const auto all = print_all(teller.packets(*panel.values(), 0));
   EXPECT_EQ(all.size(), panel.controls().size());
   EXPECT_THAT(all, testing::IsSupersetOf({"/projector/brightness 1", "/light/blackout 0",
                                           "/content/left builtin:atlas", "/content/gravity 0 1 0",
                                           "/cascade/predict/method hold"}));
-  EXPECT_THAT(outbox.packets({}, *panel.values()), ElementsAre());
+  EXPECT_THAT(teller.packets(*panel.values(), 0), ElementsAre());
   ASSERT_TRUE(panel.set(std::vector<std::string>{"projector.brightness=0.25"}, "page"));
-  EXPECT_THAT(print_all(outbox.packets({}, *panel.values())),
+  EXPECT_THAT(print_all(teller.packets(*panel.values(), 0)),
               ElementsAre("/projector/brightness 0.25"));
-  outbox.refresh();
-  EXPECT_EQ(outbox.packets({}, *panel.values()).size(), panel.controls().size());
+  teller.refresh();
+  EXPECT_EQ(teller.packets(*panel.values(), 0).size(), panel.controls().size());
+}
+
+TEST(OscValues, WhatAReceiverSetsComesBackToItLaterAndToOthersAtOnce) {
+  test::TablePanel panel;
+  const Addresses addresses(panel.controls());
+  ValueTeller own(addresses, "10.0.0.7"), other(addresses, "10.0.0.8");
+  (void)own.packets(*panel.values(), 0);
+  (void)other.packets(*panel.values(), 0);
+  std::int64_t now_ns = kSecond_ns;
+  for (int i = 0; i < 60; ++i, now_ns += kSecond_ns / 60) {
+    const auto value = fmt::format("light.master={}", 0.5 + 0.001 * i);
+    ASSERT_TRUE(panel.set(std::vector<std::string>{value}, "osc 10.0.0.7"));
+    EXPECT_THAT(own.packets(*panel.values(), now_ns), ElementsAre()) << "its fader would jump";
+    EXPECT_EQ(other.packets(*panel.values(), now_ns).size(), 1u);
+  }
+  EXPECT_THAT(print_all(own.packets(*panel.values(), now_ns + kSecond_ns)),
+              ElementsAre("/light/master 0.559"));
+  ASSERT_TRUE(panel.set(std::vector<std::string>{"light.master=0.1"}, "page"));
+  EXPECT_EQ(own.packets(*panel.values(), now_ns + kSecond_ns).size(), 1u) << "of somebody else";
+}
+
+TEST(OscFigures, AreThoseOfTheStatus) {
+  const auto status = json::parse(R"({"rings": {"camera.frames": {"held_hz": 525.5},
+      "content.left": {"held_hz": null}}, "services": {"pose": {"state": "ready"}, "odd": 3},
+      "light": {"missed_refreshes": 2}, "lost_images": {"missing": 3, "skipped": 4},
+      "tracker_faults": {"late": 5}, "tracker_drift": {"across_mm": 1.5},
+      "stage_us": {"draw": {"p50": 500.0, "p99": 1500.0}}})");
+  EXPECT_THAT(print_all({write_figures(status)}),
+              testing::UnorderedElementsAre("/rate/camera/frames 526", "/service/pose ready",
+                                            "/time/draw 0.5 1.5", "/error/missed_refreshes 2",
+                                            "/error/lost_images 7", "/error/tracker_faults 5",
+                                            "/error/drift_mm 1.5"));
+  for (const auto* odd : {"{}", "[]", "null", R"({"rings": 7, "light": null, "services": []})"})
+    EXPECT_EQ(print_all({write_figures(json::parse(odd))}).size(), 3u) << odd;
 }
 
 TEST(OscOutbox, AHandIsToldAtItsRateAndOnceMoreWhenItIsGone) {
-  test::TablePanel panel;
-  const Addresses addresses(panel.controls());
-  Outbox outbox(addresses, 10);
-  (void)outbox.packets({}, *panel.values());
+  Outbox outbox(10);
   auto scene = scene_with_left_hand(kSecond_ns);
-  const auto told = print_all(outbox.packets(scene, *panel.values()));
+  const auto told = print_all(outbox.packets(scene));
   EXPECT_THAT(told, testing::IsSupersetOf(
                         {"/hand/left/there 1", "/hand/left/pinch 0.5", "/hand/left/speed 1.5"}));
   scene.now_ns += kSecond_ns / 60;
-  EXPECT_THAT(outbox.packets(scene, *panel.values()), ElementsAre());
+  EXPECT_THAT(outbox.packets(scene), ElementsAre());
   scene.gestures[0].is_there = false;
   scene.now_ns += kSecond_ns;
-  EXPECT_THAT(print_all(outbox.packets(scene, *panel.values())), ElementsAre("/hand/left/there 0"));
+  EXPECT_THAT(print_all(outbox.packets(scene)), ElementsAre("/hand/left/there 0"));
   scene.now_ns += kSecond_ns;
-  EXPECT_THAT(outbox.packets(scene, *panel.values()), ElementsAre());
+  EXPECT_THAT(outbox.packets(scene), ElementsAre());
 }
 
 TEST(OscOutbox, AHandFitsIntoOneFrameOfTheNetwork) {
-  test::TablePanel panel;
-  const Addresses addresses(panel.controls());
-  Outbox outbox(addresses, 60);
-  (void)outbox.packets({}, *panel.values());
-  const auto packets = outbox.packets(scene_with_left_hand(kSecond_ns), *panel.values());
+  Outbox outbox(60);
+  const auto packets = outbox.packets(scene_with_left_hand(kSecond_ns));
   ASSERT_EQ(packets.size(), 1u);
   EXPECT_GT(packets[0].size(), 26 * 5 * sizeof(float));
   EXPECT_LE(packets[0].size(), 1472u);
 }
 
 TEST(OscOutbox, EventsAreTold) {
-  test::TablePanel panel;
-  const Addresses addresses(panel.controls());
-  Outbox outbox(addresses, 60);
-  (void)outbox.packets({}, *panel.values());
+  Outbox outbox(60);
   Scene scene;
   scene.events = {"left.appears", "idle"};
-  EXPECT_THAT(print_all(outbox.packets(scene, *panel.values())),
+  EXPECT_THAT(print_all(outbox.packets(scene)),
               ElementsAre("/event/left/appears 1", "/event/idle 1"));
 }
 

@@ -49,6 +49,9 @@ class TwinCamera final : public Camera {
   void watch_light(ipc::Reader<msg::Projection> projections) override {
     projections_ = std::move(projections);
   }
+  bool is_adjustable() const override { return true; }
+  void adjust(const config::Rig& rig) override { twin_->adjust(rig.twin); }
+
   /// Shows a board in place of hands, in the light of the projector.
   Result<void> show_board(const config::TwinProp& settings, const config::Projector& projector) {
     auto picture = picture_of(settings.board);

@@ -28,6 +28,9 @@ class TwinDetector final : public Detector {
     return landmarks;
   }
 
+  bool is_adjustable() const override { return true; }
+  void adjust(const config::Rig& rig) override { twin_->adjust(rig.twin); }
+
  private:
   void begin(const msg::Header& seen) {
     const auto detection = twin_->detect(runs_++, seen.frame_id, seen.origin_ns - epoch_ns_);

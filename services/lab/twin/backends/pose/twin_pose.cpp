@@ -34,6 +34,9 @@ class TwinPose final : public PoseSource {
     return {};
   }
 
+  bool is_adjustable() const override { return true; }
+  void adjust(const config::Rig& rig) override { twin_->adjust(rig.twin); }
+
   joints::Conventions conventions() const override {
     return {.place = joints::Place::model, .radii = joints::Radii::model};
   }
