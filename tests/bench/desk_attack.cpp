@@ -118,12 +118,15 @@ void storm(std::uint16_t port, std::atomic<std::uint64_t>& sent, const std::atom
   }
 }
 
-/// Takes a stream of the page until it is over.
+/// Takes a stream of the page until it is over. One that is turned away asks again, as a page does.
 void look(std::uint16_t port, const std::string& token, const char* path,
           const std::atomic<bool>& is_over) {
-  Wire wire(port);
-  wire.send(test::request_text(port, "GET", path, {{"Authorization", "Bearer " + token}}));
-  while (!is_over) wire.receive("", 0, 1s);
+  while (!is_over) {
+    Wire wire(port);
+    wire.send(test::request_text(port, "GET", path, {{"Authorization", "Bearer " + token}}));
+    while (!is_over && !wire.is_closed()) wire.receive("", 0, 1s);
+    sleep_until_ns(now_ns() + 50'000'000);
+  }
 }
 
 /// Where the page is.

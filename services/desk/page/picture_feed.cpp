@@ -13,8 +13,8 @@
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/projection.hpp"
 #include "renderer/media/jpeg.hpp"
-#include "services/desk/page/json_text.hpp"
 #include "services/desk/base/low_priority.hpp"
+#include "services/desk/page/json_text.hpp"
 
 namespace handcast::desk {
 namespace {
