@@ -93,7 +93,10 @@ class GestureReader {
         complain(value, fmt::format("{} gestures are too many; the most is {}", array->size(),
                                     kMostGestures));
       for (const auto& element : *array)
-        if (const auto* table = std::get_if<Table>(&element.data)) read_one(element, *table);
+        if (const auto* table = std::get_if<Table>(&element.data))
+          read_one(element, *table);
+        else
+          complain(element, "a gesture is a table, [[gesture]]");
     }
     if (faults_.empty()) return std::move(knobs_);
     std::ranges::stable_sort(faults_, {}, &Fault::first);
@@ -116,7 +119,8 @@ class GestureReader {
   std::string read_text(const Value& at, const Table& table, std::string_view name) {
     const auto* value = find(table, name);
     const auto* text = value ? std::get_if<std::string>(&value->data) : nullptr;
-    if (!text) complain(value ? *value : at, fmt::format("a gesture needs {}, a text", name));
+    if (!text || text->empty())
+      complain(value ? *value : at, fmt::format("a gesture needs {}, a text", name));
     return text ? *text : "";
   }
   void read_number(const Table& table, std::string_view name, double min, double max,

@@ -8,9 +8,9 @@
 #include <array>
 #include <charconv>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 
+#include "ipc/base/input_file.hpp"
 #include "ipc/base/quote.hpp"
 #include "services/desk/lamp/connection.hpp"
 #include "services/desk/lamp/md5.hpp"
@@ -198,10 +198,11 @@ Result<std::string> read_password(const std::string& file) {
     return fail(Errc::bad_config, fmt::format("projector.lamp.password_file: {} {}", file, why));
   };
   struct stat found {};
-  std::ifstream in(file);
-  std::string password;
-  if (::stat(file.c_str(), &found) != 0 || !std::getline(in, password))
+  constexpr std::uint64_t kMostBytes = 4096;
+  const auto text = read_input(file, kMostBytes);
+  if (::stat(file.c_str(), &found) != 0 || !text || text->empty())
     return wrong("cannot be read, or is empty");
+  std::string password = text->substr(0, text->find('\n'));
   if ((found.st_mode & 077) != 0) return wrong("can be read by others; `chmod 600` makes it yours");
   while (!password.empty() && (password.back() == '\r' || password.back() == ' '))
     password.pop_back();

@@ -12,7 +12,7 @@
 namespace handcast::desk {
 
 /// OSC in and out, and its description by OSCQuery, as set in [desk.osc]. Messages that come in set
-/// the panel from a thread of its own, at once and at most 250 times a second. `camera`: whose
+/// the panel from a thread of its own, at once and at most 60 times a second. `camera`: whose
 /// image TUIO's coordinates are of. `cues`: null if there is no cue list. Both outlive the result.
 /// Null: nothing is set in [desk.osc]. Errors: bad_config (no address, too many), unavailable (a
 /// port is in use).

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -25,6 +26,8 @@ std::string_view cookie_in(std::string_view cookies, std::string_view name) {
 
 constexpr std::string_view kBearer = "Bearer ";
 
+char to_lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 /// True if a request names this computer: the address that it came to, or its name. Others were
 /// made to point here.
 bool is_own_name(const std::string& host, const HttpRequest& request) {
@@ -33,7 +36,11 @@ bool is_own_name(const std::string& host, const HttpRequest& request) {
   if (!request.is_encrypted) return host == "localhost" + port;
   std::array<char, 256> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) return false;
-  return host == name.data() + port || host == name.data() + (".local" + port);
+  // Browsers write it in lower case, however this computer is named.
+  const auto is_same = [&](std::string_view end) {
+    return std::ranges::equal(host, name.data() + std::string(end) + port, {}, to_lower, to_lower);
+  };
+  return is_same("") || is_same(".local");
 }
 
 }  // namespace
@@ -62,6 +69,7 @@ std::uint16_t Access::last_port() const {
 Result<void> Access::announce(const std::string& address, std::uint16_t port,
                               std::optional<control::LanAddress> lan) {
   const std::lock_guard lock(mutex_);
+  read_again();  // somebody may have renewed the tokens since
   address_.url = fmt::format("http://{}:{}", address, port);
   address_.lan = std::move(lan);
   auto written = control::write_desk_file(file_, address_);

@@ -15,6 +15,7 @@
 #include <type_traits>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/control/desk_address.hpp"
 
 namespace handcast::desk {
@@ -148,7 +149,9 @@ bool fits(gnutls_x509_crt_t certificate, gnutls_x509_privkey_t key) {
 Result<Certificate> open_certificate(const std::filesystem::path& file,
                                      const std::vector<std::string>& names) {
   std::error_code unknown;
-  if (!std::filesystem::exists(file, unknown)) return make(file, names);
+  // An empty one is of a program that was ended, or of a full disk.
+  if (const auto size = std::filesystem::file_size(file, unknown); unknown || size == 0)
+    return make(file, names);
   if (!is_private(file)) return unusable(file, "is not a file of this user alone");
   auto pem = read_input(file, kMostText);
   if (!pem) return unusable(file, "cannot be read");
@@ -161,8 +164,13 @@ Result<Certificate> open_certificate(const std::filesystem::path& file,
       gnutls_x509_privkey_import(key.get(), &text, GNUTLS_X509_FMT_PEM) != 0 ||
       !fits(certificate.get(), key.get()))
     return unusable(file, "is damaged");
-  if (gnutls_x509_crt_get_expiration_time(certificate.get()) < std::time(nullptr) + kRenewed_s)
-    return make(file, names);
+  const auto ends = gnutls_x509_crt_get_expiration_time(certificate.get());
+  const auto now = std::time(nullptr);
+  if (ends < now + kRenewed_s) {
+    auto renewed = make(file, names);
+    if (renewed || ends < now) return renewed;
+    log::warning("the certificate of the page ends soon: {}", renewed.error().what);
+  }
   return Certificate{*pem, *pem, fingerprint_of(certificate.get())};
 }
 

@@ -133,13 +133,13 @@ void Metrics::add_landmark(double error_px, double error_mm) {
   landmark_mm_.add(static_cast<float>(error_mm));
 }
 
-/// What people would notice, by the model of a viewer: edges are seen as far as the light ends
-/// inside the hand.
+/// What people would notice, by the model of a viewer. Light that is late without a fill ends inside
+/// the hand along half of its outline: that counts as all edges.
 void Metrics::write_perception(nlohmann::json& json) const {
   std::vector<double> speeds_deg_s;
   for (const float speed : speed_m_s_.kept())
     speeds_deg_s.push_back(perception::degrees_per_s(speed));
-  const double edges = outline_px_ > 0 ? std::min(1.0, all_.seam_px / outline_px_) : 0;
+  const double edges = outline_px_ > 0 ? std::min(1.0, 2 * all_.seam_px / outline_px_) : 0;
   const double jnd_ms = perception::jnd_ms(speeds_deg_s, {.edges = edges});
   const bool is_seen = std::isfinite(jnd_ms) && all_.speed2_px_s2 > 0;
   const double latency_ms = 1e3 * all_.lag_px_s / std::max(all_.speed2_px_s2, 1e-9);

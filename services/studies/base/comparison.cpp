@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "ipc/base/join.hpp"
 
@@ -16,8 +17,9 @@ namespace {
 template <class Get>
 std::vector<std::string> distinct(const std::vector<Measured>& measured, Get get) {
   std::vector<std::string> all;
+  std::set<std::string> known;
   for (const auto& each : measured)
-    if (std::ranges::find(all, get(each)) == all.end()) all.push_back(get(each));
+    if (known.insert(get(each)).second) all.push_back(get(each));
   return all;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace handcast::study {
 namespace {
@@ -52,7 +53,8 @@ std::string bars_of(const Comparison& comparison, const std::string& unit) {
       "<svg viewBox=\"0 0 {} {}\" role=\"img\" "
       "aria-label=\"values by subject and condition\">",
       kWidth, kHeight);
-  const double step = most > 40 ? 20 : most > 12 ? 5 : most > 4 ? 2 : 1;
+  const double decade = std::pow(10, std::floor(std::log10(most)));
+  const double step = decade * (most > 5 * decade ? 1 : most > 2 * decade ? 0.5 : 0.2);
   for (double ms = 0; ms <= most; ms += step)
     svg += fmt::format(
         "<line class=\"axis\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
@@ -64,7 +66,7 @@ std::string bars_of(const Comparison& comparison, const std::string& unit) {
   for (std::size_t s = 0; s < comparison.subjects.size(); ++s) {
     const double middle = kLeft + group * (static_cast<double>(s) + 0.5);
     for (std::size_t c = 0; c < comparison.conditions.size(); ++c) {
-      const double height = comparison.values[c][s] * per_ms;
+      const double height = std::max(0.0, comparison.values[c][s]) * per_ms;
       svg += fmt::format(
           "<rect class=\"bar{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
           "height=\"{:.1f}\"><title>{}, {}: {:.2f} {}</title></rect>",

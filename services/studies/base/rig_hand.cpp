@@ -33,6 +33,13 @@ Result<std::string> as_now(const config::LiveBoard& board, const std::string& pa
   return path + "=" + config::print_value(*setting);
 }
 
+/// Whether two assignments give a setting the same value, with or without quotes.
+bool same(std::string a, std::string b) {
+  std::erase(a, '"');
+  std::erase(b, '"');
+  return a == b;
+}
+
 }  // namespace
 
 void RigHand::Close::operator()(handcast_content* content) const { handcast_close(content); }
@@ -100,7 +107,8 @@ Result<void> RigHand::set(const std::vector<std::string>& assignments) {
     if (std::ranges::any_of(afterwards_, is_known)) continue;
     auto before = as_now(*board_, path);
     if (!before) return tl::make_unexpected(before.error());
-    afterwards_.push_back(std::move(*before));
+    // What is so already was left by a program that was killed: the value of the file comes back.
+    afterwards_.push_back(same(*before, assignment) ? path : std::move(*before));
   }
   const auto set = board_->set(assignments, program_);
   return set ? Result<void>() : tl::make_unexpected(set.error());

@@ -24,6 +24,8 @@ struct StudyTable {
   Result<std::size_t> column(std::string_view column) const;
   /// A cell as a number. Errors: bad_data (it is none; the sentence has file and line).
   Result<double> number(std::size_t row, std::size_t column) const;
+  /// The same, a whole number from `least` to `most`.
+  Result<int> whole(std::size_t row, std::size_t column, int least, int most) const;
 };
 
 /// Reads one, with the line ends of any system. Empty lines are left out. Errors: bad_config (the
@@ -34,11 +36,15 @@ Result<StudyTable> read_study_table(const std::filesystem::path& file);
 /// power cut; one that was cut off is removed when the file is opened again.
 class StudyLog {
  public:
+  /// What of the earlier lines is kept in memory.
+  enum class Keeps { all, none };
   /// Opens it, or creates it and its folder. Errors: bad_config (it cannot be written, or has other
   /// columns), unavailable (another program writes it), bad_data (it is no table).
-  static Result<StudyLog> open(const std::filesystem::path& file, const CsvRow& columns);
+  static Result<StudyLog> open(const std::filesystem::path& file, const CsvRow& columns,
+                               Keeps keeps = Keeps::all);
 
-  /// What was in the file when it was opened.
+  /// What was in the file when it was opened; without rows for Keeps::none, which reads a file of
+  /// any size.
   const StudyTable& earlier() const { return earlier_; }
   /// Adds lines. Errors: unavailable (e.g. the disk is full).
   /// @{
@@ -49,9 +55,15 @@ class StudyLog {
  private:
   StudyLog(std::filesystem::path file, UniqueFd fd, StudyTable earlier)
       : file_(std::move(file)), fd_(std::move(fd)), earlier_(std::move(earlier)) {}
+  Result<void> write(std::string_view lines);
+
   std::filesystem::path file_;
   UniqueFd fd_;
   StudyTable earlier_;
 };
+
+/// Ends the last line of a file that people edit, if it has no end, so that a log does not take it
+/// for one that was cut off. A file that is not there is left so.
+void end_last_line(const std::filesystem::path& file);
 
 }  // namespace handcast::study

@@ -43,7 +43,10 @@ int sessions_done(const StudyTable& log);
 
 /// What was found in logs, without training.
 struct CharacterFindings {
-  Comparison seconds;  ///< mean time of a round: by pair of sessions of a subject, as in the paper
+  /// The mean time of a round: by subject, and by pair of sessions of a subject as in the paper.
+  /// @{
+  Comparison seconds, pairs;
+  /// @}
   std::vector<double> accuracy;  ///< share of right answers, by condition
   /// By condition and difficulty 1 to 5: how many sessions.
   std::vector<std::array<int, 5>> difficulty;

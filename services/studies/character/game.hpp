@@ -11,7 +11,7 @@
 
 namespace handcast::study {
 
-/// The characters of the game, 43: none that is easily taken for another one of the others.
+/// The characters of the game, 43 (Casper DPM, supplement).
 inline constexpr std::string_view kCharacters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ012345678!@#$%^&?";
 /// Index to little finger.
 inline constexpr std::size_t kTips = 4;

@@ -67,9 +67,14 @@ Result<std::string> analyse_logs(const Options& options) {
   }
   const auto findings = analyse_characters(logs);
   if (!findings) return tl::make_unexpected(findings.error());
-  std::string text = describe(findings->seconds, "s");
+  std::string text = describe(findings->seconds, "s") + "By pair of sessions, as in the paper:\n" +
+                     describe(findings->pairs, "s");
   if (!options.json_file.empty())
-    if (auto written = write_whole(options.json_file, to_json(*findings).dump(2) + "\n"); !written)
+    if (auto written = write_whole(
+            options.json_file,
+            to_json(*findings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                "\n");
+        !written)
       return tl::make_unexpected(written.error());
   if (options.page_folder.empty()) return text;
   std::error_code ignored;
@@ -107,7 +112,8 @@ class Play {
     if (auto set = hand_.set(settings_of(session.is_corrected)); !set) return set;
     const auto seed = twin::mixed(
         static_cast<std::uint64_t>(options_.seed) ^
-        twin::mixed(static_cast<std::uint64_t>(1000 * options_.subject + session.number)));
+        twin::mixed(static_cast<std::uint64_t>(1000 * options_.subject + session.number) ^
+                    twin::mixed(log_.earlier().rows.size())));
     CharacterGame game(seed, options_.rounds);
     while (!game.is_over()) {
       if (daemon::stop_requested()) return fail(Errc::disconnected, "the session was left");

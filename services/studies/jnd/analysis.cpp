@@ -30,22 +30,24 @@ Result<std::vector<fs::path>> logs_in(const std::string& name) {
   return logs;
 }
 
+constexpr std::size_t kProtocol = 2, kStimulus = 9;
+
 /// The settings that a log was made with, from its first row.
 Result<CourseSettings> settings_of(const StudyTable& log) {
   CourseSettings settings;
-  const auto subject = log.number(0, 0);
+  const auto subject = log.whole(0, 0, 1, kMostSubjects);
   if (!subject) return tl::make_unexpected(subject.error());
   const auto& seed = log.rows[0][1];
   const auto read = std::from_chars(seed.data(), seed.data() + seed.size(), settings.seed);
   const auto kind = std::ranges::find(kProcedureNames, log.rows[0][2]);
-  if (*subject < 1 || *subject > kMostSubjects || read.ec != std::errc{} ||
-      kind == std::end(kProcedureNames))
+  if (read.ec != std::errc{} || kind == std::end(kProcedureNames))
     return fail(
         Errc::bad_data,
         fmt::format("{}: row 1 has subject {}, seed {} and protocol {}, which are not those "
                     "of a study",
                     log.name, quote(log.rows[0][0]), quote(seed), quote(log.rows[0][2])));
-  settings.subject = static_cast<int>(*subject);
+  settings.stimulus = log.rows[0][kStimulus];
+  settings.subject = *subject;
   settings.procedure = static_cast<ProcedureKind>(kind - std::begin(kProcedureNames));
   return settings;
 }
@@ -58,6 +60,13 @@ Result<void> add_log(const StudyTable& log, JndFindings& findings,
   }
   const auto settings = settings_of(log);
   if (!settings) return tl::make_unexpected(settings.error());
+  const auto way = log.rows[0][kProtocol] + ", " + settings->stimulus;
+  if (!findings.way.empty() && findings.way != way)
+    return fail(Errc::bad_data,
+                fmt::format("{} was made with another protocol or stimulus ({}) than the logs "
+                            "before it ({}); analyse them apart",
+                            log.name, way, findings.way));
+  findings.way = way;
   Course course(*settings);
   if (auto replayed = course.replay(log); !replayed) return replayed;
   for (const auto& result : course.results()) {
@@ -92,10 +101,11 @@ std::string sessions_of(const JndFindings& findings) {
       "<th>JND<th>last five reversals<th>fit (95 %)</tr>";
   for (const auto& [subject, result] : findings.sessions)
     rows += fmt::format(
-        "<tr><td>{}<td>{}<td>{}<td>{}<td>{:.2f}<td>{:.2f}<td>{:.2f} ({:.2f}…{:.2f})</tr>",
+        "<tr><td>{}<td>{}<td>{}<td>{}<td>{:.2f}<td>{}<td>{:.2f} ({:.2f}…{:.2f})</tr>",
         escaped(subject), result.is_training ? "training" : "test",
         kConditionNames[static_cast<std::size_t>(result.condition)], result.trials, result.jnd_ms,
-        result.mean_of_five_ms, result.fit.jnd_ms, result.fit.low_ms, result.fit.high_ms);
+        result.mean_of_five_ms ? fmt::format("{:.2f}", *result.mean_of_five_ms) : "–",
+        result.fit.jnd_ms, result.fit.low_ms, result.fit.high_ms);
   return rows +
          "</table><small>All in ms. Fit: a logistic psychometric function with lapses, from "
          "all answers of the session.</small>";
@@ -134,7 +144,8 @@ nlohmann::json to_json(const JndFindings& findings) {
          {"condition", kConditionNames[static_cast<std::size_t>(result.condition)]},
          {"trials", result.trials},
          {"jnd_ms", result.jnd_ms},
-         {"mean_of_five_reversals_ms", result.mean_of_five_ms},
+         {"mean_of_five_reversals_ms",
+          result.mean_of_five_ms ? nlohmann::json(*result.mean_of_five_ms) : nlohmann::json()},
          {"fit_ms", result.fit.jnd_ms},
          {"fit_interval_ms", {result.fit.low_ms, result.fit.high_ms}},
          {"slope", result.fit.slope},

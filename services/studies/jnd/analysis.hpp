@@ -21,6 +21,7 @@ struct SubjectSession {
 struct JndFindings {
   Comparison comparison;                 ///< of the JNDs
   std::vector<SubjectSession> sessions;  ///< of logs: with the other estimates
+  std::string way;                       ///< of logs: their protocol and stimulus
   std::vector<std::string> unfinished;   ///< logs whose course is not over, in sentences
 };
 

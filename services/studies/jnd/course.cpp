@@ -26,8 +26,8 @@ Course::Course(const CourseSettings& settings) : settings_(settings) {
 void Course::begin_session() {
   number_ = 0;
   belief_ = PsychometricBelief();
-  procedure_ = make_procedure(settings_.procedure,
-                              settings_.seed ^ twin::mixed(static_cast<std::uint64_t>(session_)));
+  const auto which = static_cast<std::uint64_t>(10 * settings_.subject + session_);
+  procedure_ = make_procedure(settings_.procedure, settings_.seed ^ twin::mixed(which));
 }
 
 bool Course::is_late_first() const {
@@ -55,20 +55,21 @@ void Course::answer(const Answer& answer) {
   if (!procedure_->is_over()) return;
   const auto* stairs = dynamic_cast<const Staircase*>(procedure_.get());
   const double jnd_ms = procedure_->jnd_ms();
-  results_.push_back({.is_training = asked.is_training,
-                      .condition = asked.condition,
-                      .trials = number_,
-                      .jnd_ms = jnd_ms,
-                      .mean_of_five_ms = stairs ? stairs->mean_of_five_ms() : jnd_ms,
-                      .fit = belief_.estimate()});
+  results_.push_back(
+      {.is_training = asked.is_training,
+       .condition = asked.condition,
+       .trials = number_,
+       .jnd_ms = jnd_ms,
+       .mean_of_five_ms = stairs ? std::optional(stairs->mean_of_five_ms()) : std::nullopt,
+       .fit = belief_.estimate()});
   ++session_;
   begin_session();
 }
 
 CsvRow Course::columns() {
-  return {"subject",   "seed",        "protocol", "session",        "phase",
-          "condition", "trial",       "delay_ms", "late",           "answer",
-          "correct",   "reaction_ms", "repeats",  "worst_error_ms", "time"};
+  return {"subject",     "seed",     "protocol",       "session",  "phase",  "condition",
+          "trial",       "delay_ms", "late",           "stimulus", "answer", "correct",
+          "reaction_ms", "repeats",  "worst_error_ms", "time"};
 }
 
 CsvRow Course::line(const Answer& answer, std::string_view time) const {
@@ -83,6 +84,7 @@ CsvRow Course::line(const Answer& answer, std::string_view time) const {
           fmt::format("{}", asked.number + 1),
           fmt::format("{:.4f}", asked.delay_ms),
           interval(asked.is_late_first),
+          settings_.stimulus,
           interval(answer.picks_first),
           answer.picks_first == asked.is_late_first ? "1" : "0",
           fmt::format("{:.1f}", answer.reaction_ms),
@@ -92,23 +94,24 @@ CsvRow Course::line(const Answer& answer, std::string_view time) const {
 }
 
 Result<void> Course::replay(const StudyTable& log) {
-  enum Column : std::size_t { kAnswer = 9, kReaction = 11, kRepeats = 12, kError = 13, kTime = 14 };
+  enum Column : std::size_t { kAnswer = 10, kReaction = 12, kRepeats, kError, kTime };
   for (std::size_t r = 0; r < log.rows.size(); ++r) {
     const auto& row = log.rows[r];
     Answer answer{.picks_first = row[kAnswer] == "1"};
-    const auto reaction_ms = log.number(r, kReaction), repeats = log.number(r, kRepeats),
-               error_ms = log.number(r, kError);
-    for (const auto* number : {&reaction_ms, &repeats, &error_ms})
+    const auto reaction_ms = log.number(r, kReaction), error_ms = log.number(r, kError);
+    const auto repeats = log.whole(r, kRepeats, 0, 1'000'000);
+    for (const auto* number : {&reaction_ms, &error_ms})
       if (!*number) return tl::make_unexpected(number->error());
+    if (!repeats) return tl::make_unexpected(repeats.error());
     answer.reaction_ms = *reaction_ms;
-    answer.repeats = static_cast<int>(*repeats);
+    answer.repeats = *repeats;
     answer.worst_error_ms = *error_ms;
     const auto expected = trial() ? line(answer, row[kTime]) : CsvRow();
     if (expected.empty() || !std::equal(row.begin(), row.begin() + kAnswer, expected.begin()))
       return fail(
           Errc::bad_data,
           fmt::format("{}: row {} does not follow from the rows before it; the log was made "
-                      "with another seed or protocol, or was changed",
+                      "with another seed, protocol or stimulus, or was changed",
                       log.name, r + 1));
     this->answer(answer);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -33,8 +34,8 @@ struct Trial {
 struct Answer {
   bool picks_first = false;
   double reaction_ms = 0;  ///< from the end of the second interval
-  /// What was shown: intervals that were shown again because a refresh was missed, and the largest
-  /// difference between the delay that was asked and the one that was shown.
+  /// What was shown: intervals that were shown again because a refresh was missed, and the farthest
+  /// that a picture was from the refresh that it was drawn for.
   /// @{
   int repeats = 0;
   double worst_error_ms = 0;
@@ -46,9 +47,9 @@ struct SessionResult {
   bool is_training = false;
   Condition condition = Condition::baseline;
   int trials = 0;
-  double jnd_ms = 0;           ///< by the procedure: of the staircase, the last delay
-  double mean_of_five_ms = 0;  ///< of a staircase: at its last five reversals; else jnd_ms
-  PsychometricEstimate fit;    ///< from all answers
+  double jnd_ms = 0;                      ///< by the procedure: of the staircase, the last delay
+  std::optional<double> mean_of_five_ms;  ///< of a staircase: at its last five reversals
+  PsychometricEstimate fit;               ///< from all answers
 };
 
 inline constexpr int kMostSubjects = 999;
@@ -58,6 +59,7 @@ struct CourseSettings {
   int subject = 1;  ///< 1 to kMostSubjects
   std::uint64_t seed = 1;
   ProcedureKind procedure = ProcedureKind::staircase;
+  std::string stimulus;  ///< what is shown, in words: a course goes on with the same only
 };
 
 /// All that a subject does (Casper DPM, Just Noticeable Difference): a training and a test session

@@ -93,14 +93,20 @@ Result<std::string> StudyScreen::ask(const std::vector<std::string>& lines,
   }
 }
 
-Result<void> StudyScreen::tell(const std::vector<std::string>& lines, double seconds) {
+bool StudyScreen::is_escape_pressed() {
+  const auto keys = window_->take_keys();
+  return std::ranges::find(keys, kEscape) != keys.end();
+}
+
+Result<bool> StudyScreen::tell(const std::vector<std::string>& lines, double seconds) {
   const auto picture = page(lines);
   const auto end_ns = now_ns() + seconds_to_ns(seconds);
   do {
     if (auto shown = show(picture.view(), {0, 0, width_px_, height_px_}); !shown)
       return tl::make_unexpected(shown.error());
+    if (is_escape_pressed()) return false;
   } while (now_ns() < end_ns);
-  return {};
+  return true;
 }
 
 Result<ShownInterval> StudyScreen::play(Stimulus& stimulus, double from_s, double seconds,
@@ -120,13 +126,14 @@ Result<ShownInterval> StudyScreen::play(Stimulus& stimulus, double from_s, doubl
                            .light_s = hand_s - 1e-3 * delay_ms,
                            .shown_ns = shown->shown_ns,
                            .error_ms = ns_to_ms(shown->shown_ns - next_ns)};
-    const double shown_delay_ms = 1e3 * (frame.hand_s - frame.light_s);
-    interval.worst_error_ms =
-        std::max(interval.worst_error_ms, std::abs(shown_delay_ms - delay_ms));
     // The first frame finds the rhythm of the monitor.
     const bool is_late = std::abs(frame.error_ms) > kTooLate * ns_to_ms(period_ns);
-    interval.missed += !interval.frames.empty() && is_late;
+    if (!interval.frames.empty()) {
+      interval.missed += is_late;
+      interval.worst_error_ms = std::max(interval.worst_error_ms, std::abs(frame.error_ms));
+    }
     interval.frames.push_back(frame);
+    if ((interval.is_left = is_escape_pressed())) return interval;
   }
 }
 

@@ -25,7 +25,8 @@ struct ShownFrame {
 struct ShownInterval {
   std::vector<ShownFrame> frames;
   int missed = 0;  ///< frames that were not shown in the refresh that they were drawn for
-  double worst_error_ms = 0;  ///< the largest difference of the delay shown from the delay asked
+  double worst_error_ms = 0;  ///< the farthest from the refresh that a frame was drawn for
+  bool is_left = false;       ///< Escape was pressed meanwhile
 };
 
 /// Keys that end what waits for them.
@@ -44,8 +45,8 @@ class StudyScreen {
   /// Errors: those of Window::show(); disconnected (the window was closed).
   Result<std::string> ask(const std::vector<std::string>& lines,
                           const std::vector<std::string_view>& keys);
-  /// Shows the same for a time.
-  Result<void> tell(const std::vector<std::string>& lines, double seconds);
+  /// Shows the same for a time. Returns false if Escape was pressed meanwhile.
+  Result<bool> tell(const std::vector<std::string>& lines, double seconds);
   /// Shows an interval of the motion. Every frame is drawn for the refresh that will show it.
   Result<ShownInterval> play(Stimulus& stimulus, double from_s, double seconds, double delay_ms,
                              Condition condition);
@@ -62,6 +63,7 @@ class StudyScreen {
   Result<renderer::Shown> show(renderer::View<const std::uint32_t> picture,
                                const renderer::Rect& region);
   Result<void> find_rhythm();
+  bool is_escape_pressed();
   renderer::Texture page(const std::vector<std::string>& lines) const;
 
   std::unique_ptr<renderer::Window> window_;

@@ -65,7 +65,6 @@ struct Stimulus::Parts {
   void compose();
 };
 
-/// Before the motion begins, and after it has ended, there is no hand.
 void Stimulus::Parts::place(double time_s, Placed& placed) {
   placed.bounds = {};
   const auto joints = twin->joints(kSide, seconds_to_ns(time_s));

@@ -13,8 +13,7 @@ namespace handcast::study {
 /// answer.
 class SimulatedSubject {
  public:
-  /// Draws a subject. `jnd_ms`: of the model, by condition. People differ as the ten of the paper
-  /// do.
+  /// Draws a subject. `jnd_ms`: of the model, by condition, the mean of all subjects.
   SimulatedSubject(std::array<double, 2> jnd_ms, std::uint64_t seed, int number);
 
   /// The delay with 75 % right answers but for blind ones, ms.

@@ -2,6 +2,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
 #include <filesystem>
 #include <optional>
@@ -25,25 +26,43 @@ constexpr double kLongestStart_s = 8;  ///< an interval begins up to here in the
 constexpr double kPause_s = 0.4;
 
 /// Where in the motion both intervals of a trial begin.
-double start_s(std::uint64_t seed, const Trial& trial) {
-  const auto key = static_cast<std::uint64_t>(1000 * trial.session + trial.number);
+double start_s(const CourseSettings& course, const Trial& trial) {
+  const auto key =
+      static_cast<std::uint64_t>(10'000 * course.subject + 1000 * trial.session + trial.number);
+  const auto seed = course.seed;
   return kLongestStart_s * static_cast<double>(twin::mixed(seed ^ twin::mixed(key + 77)) >> 11) *
          0x1p-53;
 }
 
-std::vector<std::string> consent(const fs::path& folder) {
-  const auto own = read_input(folder / "consent.txt", kMostText);
-  if (!own)
-    return {"Late light on a moving hand",
-            "You compare pairs of short films and say in which one the light is late.",
-            "It takes about an hour; you may stop at any time by pressing Escape.",
-            "What is kept: your answers, how long they took, and where you looked.",
-            "Your name is not kept.",
-            "",
-            "Space: I agree to take part        Escape: I do not"};
+constexpr const char* kConsentKeys = "Space: I agree to take part        Escape: I do not";
+
+/// The page of consent: consent.txt of the folder, if there is one. Errors: bad_config (it cannot
+/// be read, or would not fit on a screen).
+Result<std::vector<std::string>> consent(const fs::path& folder) {
+  const auto file = folder / "consent.txt";
+  std::error_code unknown;
+  if (!fs::exists(file, unknown))
+    return std::vector<std::string>{
+        "Late light on a moving hand",
+        "You compare pairs of short films and say in which one the light is late.",
+        "It takes about an hour; you may stop at any time by pressing Escape.",
+        "What is kept: your answers, how long they took, and where you looked.",
+        "Your name is not kept.",
+        "",
+        kConsentKeys};
+  const auto own = read_input(file, kMostText);
+  if (!own) return tl::make_unexpected(own.error());
+  constexpr std::size_t kMostLines = 14, kLongest = 90;
   std::vector<std::string> lines;
   std::istringstream text(*own);
   for (std::string line; std::getline(text, line);) lines.push_back(line);
+  const auto is_long = [](const auto& line) { return line.size() > kLongest; };
+  if (lines.empty() || lines.size() > kMostLines || std::ranges::any_of(lines, is_long))
+    return fail(Errc::bad_config,
+                fmt::format("{}: it must have 1 to {} lines of at most {} letters, to fit on the "
+                            "screen",
+                            file.string(), kMostLines, kLongest));
+  lines.insert(lines.end(), {"", kConsentKeys});
   return lines;
 }
 
@@ -66,6 +85,11 @@ class Sitting {
   Result<std::string> run() {
     if (const auto agreed = agree(); !agreed || !*agreed)
       return agreed.map([](bool) { return std::string("The subject did not agree."); });
+    // A program that was ended at the painting asks for it now.
+    for (const auto& result : course_.results())
+      if (!result.is_training && !fs::exists(marks_file(options_, result.condition)))
+        if (auto marked = mark(result.condition); !marked)
+          return tl::make_unexpected(marked.error());
     while (const auto trial = course_.trial()) {
       if (course_.begins_session()) {
         const auto begun = begin(*trial);
@@ -98,9 +122,9 @@ class Sitting {
   /// The page of consent, once.
   Result<bool> agree() {
     if (model_ || !log_.earlier().rows.empty()) return true;
-    return screen_->ask(consent(options_.folder), {kGoOn, kEscape}).map([](const auto& key) {
-      return key == kGoOn;
-    });
+    const auto page = consent(options_.folder);
+    if (!page) return tl::make_unexpected(page.error());
+    return screen_->ask(*page, {kGoOn, kEscape}).map([](const auto& key) { return key == kGoOn; });
   }
 
   Result<bool> begin(const Trial& trial) {
@@ -120,10 +144,10 @@ class Sitting {
     Answer shown;
     for (const int interval : {1, 2}) {
       if (!model_)
-        if (auto told = screen_->tell({fmt::format("{}", interval)}, kPause_s); !told)
-          return tl::make_unexpected(told.error());
-      if (auto played = play(trial, interval, shown); !played)
-        return tl::make_unexpected(played.error());
+        if (auto told = screen_->tell({fmt::format("{}", interval)}, kPause_s); !told || !*told)
+          return told.map([](bool) { return std::optional<Answer>(); });
+      if (auto played = play(trial, interval, shown); !played || !*played)
+        return played.map([](bool) { return std::optional<Answer>(); });
     }
     if (model_) {
       auto answer = model_->answer(trial);
@@ -141,18 +165,20 @@ class Sitting {
     return shown;
   }
 
-  /// Shows an interval until no refresh was missed.
-  Result<void> play(const Trial& trial, int interval, Answer& shown) {
+  /// Shows an interval until no refresh was missed. Returns false if the subject leaves.
+  Result<bool> play(const Trial& trial, int interval, Answer& shown) {
     const bool is_late = (interval == 1) == trial.is_late_first;
     for (int repeat = 0; repeat < kMostRepeats; ++repeat) {
       // Perfect light has no gaps: filled or not, it is the same.
       const auto played =
-          screen_->play(stimulus_, start_s(options_.course.seed, trial), options_.interval_s,
+          screen_->play(stimulus_, start_s(options_.course, trial), options_.interval_s,
                         is_late ? trial.delay_ms : 0, trial.condition);
       if (!played) return tl::make_unexpected(played.error());
-      if (auto kept = keep(trial, interval, repeat, *played); !kept) return kept;
+      if (played->is_left) return false;
+      if (auto kept = keep(trial, interval, repeat, *played); !kept)
+        return tl::make_unexpected(kept.error());
       shown.worst_error_ms = std::max(shown.worst_error_ms, played->worst_error_ms);
-      if (played->missed == 0) return {};
+      if (played->missed == 0) return true;
       ++shown.repeats;
     }
     return fail(
@@ -197,15 +223,19 @@ class Sitting {
 Result<std::string> take_course(const JndOptions& options) {
   auto log = StudyLog::open(log_file(options), Course::columns());
   if (!log) return tl::make_unexpected(log.error());
-  auto light = StudyLog::open(light_file(options), {"session", "trial", "interval", "repeat",
-                                                    "hand_s", "light_s", "shown_ns", "error_ms"});
+  auto light = StudyLog::open(
+      light_file(options),
+      {"session", "trial", "interval", "repeat", "hand_s", "light_s", "shown_ns", "error_ms"},
+      StudyLog::Keeps::none);
   if (!light) return tl::make_unexpected(light.error());
-  Course course(options.course);
+  auto course_settings = options.course;
+  const auto& shown = options.stimulus;
+  course_settings.stimulus =
+      fmt::format("{} x{} {} {}x{} {}/mm {}s", shown.motion, shown.speed, shown.content,
+                  shown.width_px, shown.height_px, shown.px_per_mm, options.interval_s);
+  Course course(course_settings);
   if (auto replayed = course.replay(log->earlier()); !replayed)
     return tl::make_unexpected(replayed.error());
-  if (!course.trial())
-    return fmt::format("Subject {} has done all sessions before; {}", options.course.subject,
-                       log_file(options));
   auto stimulus = Stimulus::open(options.stimulus);
   if (!stimulus) return tl::make_unexpected(stimulus.error());
   auto screen = StudyScreen::open({.title = "handcast study",

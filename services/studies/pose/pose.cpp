@@ -124,6 +124,7 @@ Result<std::vector<HeldPose>> read_poses(const std::filesystem::path& file) {
 }
 
 Result<void> add_pose(const std::filesystem::path& file, const HeldPose& pose) {
+  end_last_line(file);  // people edit it
   auto log = StudyLog::open(file, columns());
   if (!log) return tl::make_unexpected(log.error());
   CsvRow row{pose.name};

@@ -130,7 +130,10 @@ Result<std::string> play(const Options& options, RigHand& hand, PosePicture& pic
   RangeOfMotion motion;
   double last_s = ns_to_seconds(now_ns()), all_s = 0;
   while (game.wanted() && !daemon::stop_requested()) {
-    if (auto waited = hand.wait(); !waited) return tl::make_unexpected(waited.error());
+    if (auto waited = hand.wait(); !waited) {
+      (void)keep_ranges(options, *log, time, motion);  // the error of the rig is what is told
+      return tl::make_unexpected(waited.error());
+    }
     const double now_s = ns_to_seconds(now_ns());
     std::optional<HeldPose> held;
     if (hand.joints()) motion.see(held.emplace(held_pose(*hand.joints(), options.side)));

@@ -24,8 +24,8 @@ class Analysis : public testing::Test {
     return file.string();
   }
   /// The log of a simulated subject.
-  void write_log(int number, int most_trials = 100000) const {
-    const CourseSettings settings{.subject = number, .seed = 9};
+  void write_log(int number, int most_trials = 100000, const char* stimulus = "film") const {
+    const CourseSettings settings{.subject = number, .seed = 9, .stimulus = stimulus};
     Course course(settings);
     SimulatedSubject subject({3, 6}, settings.seed, number);
     std::string text = print_csv(Course::columns());
@@ -75,6 +75,20 @@ TEST_F(Analysis, AFolderOfLogsGivesTheTestSessionsAndNamesTheUnfinished) {
   }
 }
 
+TEST_F(Analysis, LogsOfDifferentStimuliAreNotPooled) {
+  write_log(1);
+  write_log(2, 100000, "a faster film");
+  EXPECT_THAT(analyse({scratch_.path().string()}).error().what, HasSubstr("analyse them apart"));
+}
+
+TEST_F(Analysis, AnEnormousValueMakesAPageOfUsualSize) {
+  const auto findings = analyse(
+      {write("huge.csv",
+             "subject,condition,jnd_ms\n1,baseline,1e300\n1,fill,-4\n2,baseline,3\n2,fill,4\n")});
+  ASSERT_TRUE(findings) << findings.error().what;
+  EXPECT_LT(page_of(*findings, "").size(), 20'000u);
+}
+
 TEST_F(Analysis, WhatIsNoStudyIsRefusedWithASentence) {
   EXPECT_THAT(analyse({write("a.csv", "a,b\n1,2\n")}).error().what,
               HasSubstr("no column 'subject'"));
@@ -84,7 +98,7 @@ TEST_F(Analysis, WhatIsNoStudyIsRefusedWithASentence) {
   EXPECT_THAT(analyse({"/nowhere.csv"}).error().what, HasSubstr("/nowhere.csv"));
   const auto header = print_csv(Course::columns());
   EXPECT_THAT(
-      analyse({write("c.csv", header + "0,1,stairs,1,training,baseline,1,20,1,1,1,0,0,0,x\n")})
+      analyse({write("c.csv", header + "1,1,stairs,1,training,baseline,1,20,1,film,1,1,0,0,0,x\n")})
           .error()
           .what,
       HasSubstr("protocol 'stairs'"));

@@ -174,12 +174,29 @@ TEST(CharacterAnalysis, ComparesTheRoundsOfPairsOfSessions) {
   const auto findings = analyse_characters({log});
   ASSERT_TRUE(findings) << findings.error().what;
   const auto json = to_json(*findings);
-  EXPECT_EQ(json["conditions"]["baseline"]["count"], 3);
+  EXPECT_EQ(json["conditions"]["baseline"]["count"], 1) << "a subject";
+  EXPECT_EQ(json["pairs"]["conditions"]["baseline"]["count"], 3);
   EXPECT_NEAR(json["conditions"]["baseline"]["mean_s"].get<double>(), 3.25 + 0.06, 0.02);
-  EXPECT_NEAR(json["paired_t_test"]["mean_difference_s"].get<double>(), -1, 0.02);
+  EXPECT_NEAR(json["pairs"]["paired_t_test"]["mean_difference_s"].get<double>(), -1, 0.02);
   EXPECT_DOUBLE_EQ(json["conditions"]["baseline"]["accuracy"].get<double>(), 0.75);
   EXPECT_EQ(json["conditions"]["corrected"]["difficulty"][1], 3);
   EXPECT_THAT(page_of(*findings), testing::HasSubstr("75.0 % of the answers are right"));
+}
+
+TEST(CharacterAnalysis, ASessionThatWasLeftDoesNotCountAndOneThatWasBegunAnewCountsOnce) {
+  auto log = played_log(3, 2);
+  const auto whole = analyse_characters({log});
+  ASSERT_TRUE(whole);
+  // Three rounds of the first test session, very slow, before it was begun anew; and one that was
+  // left at the end.
+  const auto first = std::ranges::find(log.rows, "test", [](const auto& row) { return row[2]; });
+  std::vector<CsvRow> left(first, first + 3);
+  for (auto& row : left) row[10] = "99";
+  log.rows.insert(first, left.begin(), left.end());
+  log.rows.insert(log.rows.end(), left.begin(), left.end());
+  const auto again = analyse_characters({log});
+  ASSERT_TRUE(again);
+  EXPECT_EQ(to_json(*again), to_json(*whole));
 }
 
 TEST(CharacterAnalysis, WhatIsNoLogIsNamed) {

@@ -58,7 +58,7 @@ TEST(Course, ACourseThatWasCutOffGoesOnTrialByTrial) {
     Course course(settings);
     ASSERT_TRUE(course.replay(part));
     for (std::size_t row = 50; row < whole.rows.size(); ++row) {
-      const Answer answer{.picks_first = whole.rows[row][9] == "1"};
+      const Answer answer{.picks_first = whole.rows[row][10] == "1"};
       ASSERT_EQ(course.line(answer, "2026-01-01T00:00:00Z"), whole.rows[row]);
       course.answer(answer);
     }
@@ -71,7 +71,10 @@ TEST(Course, ALogThatWasChangedOrIsOfAnotherSeedIsRefused) {
   auto log = log_of(settings);
   EXPECT_TRUE(Course(settings).replay(log));
   EXPECT_FALSE(Course({.subject = 1, .seed = 3}).replay(log));
-  log.rows[7][9] = log.rows[7][9] == "1" ? "2" : "1";  // another answer: other delays follow
+  auto other = settings;
+  other.stimulus = "another motion";
+  EXPECT_FALSE(Course(other).replay(log));
+  log.rows[7][10] = log.rows[7][10] == "1" ? "2" : "1";  // another answer: other delays follow
   const auto refused = Course(settings).replay(log);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what, testing::HasSubstr("row 9 does not follow"));

@@ -109,9 +109,12 @@ TEST(TaughtPoses, ComeBackFromTheirFile) {
   const test::Scratch scratch;
   const auto file = scratch.path() / "my.csv";
   for (const auto& pose : builtin_poses()) ASSERT_TRUE(add_pose(file, pose));
+  // An editor may have left the last line without an end.
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1);
+  ASSERT_TRUE(add_pose(file, builtin_poses()[0]));
   const auto poses = read_poses(file);
   ASSERT_TRUE(poses) << poses.error().what;
-  ASSERT_EQ(poses->size(), 9u);
+  ASSERT_EQ(poses->size(), 10u);
   EXPECT_GT(score_of(builtin_poses()[2], (*poses)[2]).worst_finger, 0.99f);
   std::ofstream(file) << "name,x\na,1\n";
   EXPECT_THAT(read_poses(file).error().what, testing::HasSubstr("no poses"));

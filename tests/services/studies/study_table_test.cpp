@@ -64,6 +64,43 @@ TEST_F(StudyTables, ALogGoesOnBehindItsLastWholeLine) {
   EXPECT_EQ(table->rows[1][1], "y");
 }
 
+TEST_F(StudyTables, AMarkOfTheEncodingCostsNoData) {
+  write(
+      "\xef\xbb\xbf"
+      "a,b\n1,kept whole\n2,to");
+  ASSERT_TRUE(StudyLog::open(file_, {"a", "b"}));
+  const auto table = read_study_table(file_);
+  ASSERT_TRUE(table);
+  ASSERT_EQ(table->rows.size(), 1u);
+  EXPECT_EQ(table->rows[0][1], "kept whole");
+}
+
+TEST_F(StudyTables, ALogOfAnySizeGoesOnWithoutItsRows) {
+  std::string text = "a,b\n";
+  while (text.size() < (17u << 20))
+    text += "1,xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx\n";
+  const auto whole = text.size();
+  write(text + "2,tor");
+  EXPECT_FALSE(StudyLog::open(file_, {"a", "b"})) << "it is larger than what is read";
+  {
+    auto log = StudyLog::open(file_, {"a", "b"}, StudyLog::Keeps::none);
+    ASSERT_TRUE(log) << log.error().what;
+    EXPECT_TRUE(log->earlier().rows.empty());
+    EXPECT_EQ(std::filesystem::file_size(file_), whole);
+    ASSERT_TRUE(log->add(CsvRow{"2", "y"}));
+  }
+  EXPECT_EQ(std::filesystem::file_size(file_), whole + 4);
+  EXPECT_FALSE(StudyLog::open(file_, {"a", "c"}, StudyLog::Keeps::none));
+}
+
+TEST_F(StudyTables, WholeNumbersAreInTheirRange) {
+  const auto table = read_study_table(write("a\n3\n1e300\n2.5\n"));
+  ASSERT_TRUE(table);
+  EXPECT_EQ(*table->whole(0, 0, 1, 5), 3);
+  EXPECT_THAT(table->whole(1, 0, 1, 5).error().what, HasSubstr("a whole number, 1..5"));
+  EXPECT_FALSE(table->whole(2, 0, 1, 5));
+}
+
 TEST_F(StudyTables, ALogOfAnotherKindAndOneThatIsOpenAreLeftAlone) {
   write("a,c\n1,2\n");
   EXPECT_THAT(StudyLog::open(file_, {"a", "b"}).error().what, HasSubstr("has other columns"));

@@ -36,9 +36,9 @@ TEST(Metrics, EdgesOfTheLightInsideTheHandMakeDelaysEasierToNotice) {
     EXPECT_NEAR(json["late_jnds"].get<double>() * json["jnd_ms"].get<double>(), 4, 1e-9);
     return json["jnd_ms"].get<double>();
   };
-  EXPECT_NEAR(jnd_ms(600), 3.05, 0.05);
-  EXPECT_NEAR(jnd_ms(5000), jnd_ms(600), 1e-9);
-  EXPECT_GT(jnd_ms(0), 2 * jnd_ms(600));
+  EXPECT_NEAR(jnd_ms(300), 3.05, 0.05);
+  EXPECT_NEAR(jnd_ms(5000), jnd_ms(300), 1e-9);
+  EXPECT_GT(jnd_ms(0), 2 * jnd_ms(300));
 }
 
 TEST(Metrics, TheRungsAreSharesOfTheHandsThatWereDrawn) {
