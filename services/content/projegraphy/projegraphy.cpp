@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <future>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -152,8 +155,12 @@ class ProjegraphySource final : public SettableSource {
     const bool is_first = moment.frame == 0;
     take_change();
     if (is_seen(moment.hand)) look(moment);
-    if (commission_ && number("wait") != 0) commission_->order->wait();
-    if (commission_ && commission_->order->is_done()) begin_fade(moment.time_s);
+    const bool waits = number("wait") != 0;
+    if (commission_ && waits) commission_->order->wait();
+    if (commission_ && !baking_.valid() && commission_->order->is_done()) begin_baking();
+    if (baking_.valid() &&
+        (waits || baking_.wait_for(std::chrono::seconds(0)) == std::future_status::ready))
+      begin_fade(moment.time_s);
     const bool has_changed = fade(moment.time_s) || is_first;
     if (has_changed) out.pixels() = shown_.pixels();
     return has_changed;
@@ -204,17 +211,30 @@ class ProjegraphySource final : public SettableSource {
     return flat;
   }
 
-  /// Puts the new picture on the skin as it was when the hands were looked at.
-  void begin_fade(double time_s) {
-    const auto done = std::exchange(commission_, std::nullopt);
-    const Silhouette& silhouette = done->order->silhouette();
+  /// Puts the new picture on the skin as it was when the hands were looked at, on a thread: it
+  /// takes longer than a picture of the content may.
+  void begin_baking() {
+    auto done = std::make_shared<const Commission>(std::move(*commission_));
+    commission_.reset();
     if (!done->order->recognised()) return;
-    const float scale = silhouette.scale * projegraphy::kPictureSide_px / projegraphy::kMaskSide_px;
-    print_.clear();
-    print_.take(projector_, done->hand.state, done->other ? &done->other->state : nullptr,
-                done->order->picture(), {glm::vec2(scale), 0.5f - silhouette.origin_px * scale});
+    baking_ = std::async(
+        std::launch::async,
+        [this, done, baked = renderer::Texture(shown_.width(), shown_.height())]() mutable {
+          projegraphy::give_way();
+          const Silhouette& silhouette = done->order->silhouette();
+          const float scale =
+              silhouette.scale * projegraphy::kPictureSide_px / projegraphy::kMaskSide_px;
+          print_.clear();
+          print_.take(projector_, done->hand.state, done->other ? &done->other->state : nullptr,
+                      done->order->picture(),
+                      {glm::vec2(scale), 0.5f - silhouette.origin_px * scale});
+          print_.show(true, baked);
+          return std::move(baked);
+        });
+  }
+  void begin_fade(double time_s) {
     from_ = shown_;
-    print_.show(true, to_);
+    to_ = baking_.get();
     fading_since_s_ = time_s;
   }
 
@@ -241,12 +261,13 @@ class ProjegraphySource final : public SettableSource {
   Viewer projector_;
   std::shared_ptr<Studio> studio_;
   std::string key_ = projegraphy::read_key("").value_or("");  ///< in no sentence
-  SkinPrint print_;
+  SkinPrint print_;  ///< of the thread that bakes, while there is one
   Stillness stillness_;
   std::optional<Silhouette> last_;        ///< that was looked at
   std::optional<Commission> commission_;  ///< that is being made
   renderer::Texture from_, to_, shown_;
   std::optional<double> fading_since_s_;
+  std::future<renderer::Texture> baking_;  ///< the last member: it ends first
 };
 
 }  // namespace

@@ -11,11 +11,10 @@
 #include "ipc/base/log.hpp"
 
 namespace handcast::projegraphy {
-namespace {
-
-constexpr int kNice = 10;  ///< below the content's own thread
-
-}  // namespace
+void give_way() {
+  constexpr int kNice = 10;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+}
 
 bool Order::is_done() const {
   const std::lock_guard lock(mutex_);
@@ -78,7 +77,7 @@ std::shared_ptr<Order> Studio::next(const std::stop_token& stop) {
 }
 
 void Studio::work(const std::stop_token& stop) {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);
+  give_way();
   const Recogniser recogniser({&meshes_[0], &meshes_[1]});
   while (const auto order = next(stop)) make(recogniser, *order, stop);
 }

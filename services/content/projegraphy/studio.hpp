@@ -11,6 +11,9 @@
 
 namespace handcast::projegraphy {
 
+/// Lowers the priority of this thread below that of the content's own one.
+void give_way();
+
 /// A picture of a silhouette that is being made.
 class Order {
  public:
