@@ -98,8 +98,14 @@ std::string take_kind(std::string_view& rest) {
   return kind;
 }
 
+/// Kinds that are written without a colon, as if they were looks.
+bool needs_no_name(std::string_view kind) {
+  return kind == "hand" || kind == "paint" || kind == "projegraphy" || kind == "skeleton";
+}
+
 Result<void> settle_kind(ContentElement& element) {
   auto& kind = element.kind;
+  if (kind.empty() && needs_no_name(element.what)) std::swap(kind, element.what);
   if (kind.empty()) kind = content_kind_of(element.what);
   if (kind.empty()) kind = "look";
   if (kind == "builtin") kind = "pattern";

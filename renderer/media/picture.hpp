@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
@@ -38,6 +39,8 @@ Result<GreyPicture> read_camera_picture(const std::filesystem::path& file, int u
 /// The bits, of 16, that a camera uses whose largest value is this: 8, 10, 12 or 16.
 int used_bits_of(std::uint32_t largest);
 
+/// Grey values as the bytes of a PNG file. Errors (unavailable): no memory.
+Result<std::string> png_of(GreyView grey);
 /// Writes RGBA8 as a PNG file without alpha, by write_whole(), but not durably: there may be
 /// thousands. Errors: those of it.
 Result<void> write_png(const std::filesystem::path& file, View<const std::uint32_t> picture);

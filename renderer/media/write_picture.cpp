@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace handcast::renderer {
 namespace {
 
 /// `pixels`: rows without padding.
-Result<void> write_png(const std::filesystem::path& file, int width_px, int height_px,
-                       spng_color_type colours, const std::vector<std::uint8_t>& pixels) {
+Result<std::string> encoded(int width_px, int height_px, spng_color_type colours,
+                            const std::vector<std::uint8_t>& pixels) {
   constexpr int kRunLengths = 3;  // Z_RLE: for images, the fastest, and small
   const std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)> png(spng_ctx_new(SPNG_CTX_ENCODER),
                                                                 spng_ctx_free);
@@ -38,9 +39,14 @@ Result<void> write_png(const std::filesystem::path& file, int width_px, int heig
   const std::unique_ptr<void, decltype(&std::free)> bytes(
       failed ? nullptr : spng_get_png_buffer(png.get(), &size, &failed), std::free);
   if (failed)
-    return fail(Errc::unavailable, fmt::format("The picture '{}' cannot be made: {}.",
-                                               file.string(), spng_strerror(failed)));
-  return write_whole(file, {static_cast<const char*>(bytes.get()), size}, Durable::no);
+    return fail(Errc::unavailable,
+                fmt::format("The picture cannot be made: {}.", spng_strerror(failed)));
+  return std::string(static_cast<const char*>(bytes.get()), size);
+}
+
+Result<void> write(const std::filesystem::path& file, const Result<std::string>& png) {
+  if (!png) return fail_in(file.string(), png.error());
+  return write_whole(file, *png, Durable::no);
 }
 
 }  // namespace
@@ -52,14 +58,18 @@ Result<void> write_png(const std::filesystem::path& file, View<const std::uint32
     for (int x = 0; x < picture.width; ++x)
       for (const int shift : {0, 8, 16})
         rgb.push_back(static_cast<std::uint8_t>(picture.at(x, y) >> shift));
-  return write_png(file, picture.width, picture.height, SPNG_COLOR_TYPE_TRUECOLOR, rgb);
+  return write(file, encoded(picture.width, picture.height, SPNG_COLOR_TYPE_TRUECOLOR, rgb));
 }
 
-Result<void> write_png(const std::filesystem::path& file, GreyView grey) {
+Result<std::string> png_of(GreyView grey) {
   std::vector<std::uint8_t> rows;
   for (int y = 0; y < grey.height; ++y)
     rows.insert(rows.end(), grey.row(y), grey.row(y) + grey.width);
-  return write_png(file, grey.width, grey.height, SPNG_COLOR_TYPE_GRAYSCALE, rows);
+  return encoded(grey.width, grey.height, SPNG_COLOR_TYPE_GRAYSCALE, rows);
+}
+
+Result<void> write_png(const std::filesystem::path& file, GreyView grey) {
+  return write(file, png_of(grey));
 }
 
 }  // namespace handcast::renderer

@@ -23,6 +23,7 @@ Result<std::unique_ptr<Source>> open_hand(const Opening&);
 Result<std::unique_ptr<Source>> open_shadertoy(const Opening&);
 Result<std::unique_ptr<Source>> open_skeleton(const Opening&);
 Result<std::unique_ptr<Source>> open_program(const Opening&);
+Result<std::unique_ptr<Source>> open_projegraphy(const Opening&);
 Result<std::unique_ptr<Source>> open_view(const Opening&);
 
 static constexpr SourceKind kKinds[] = {
@@ -42,6 +43,7 @@ static constexpr SourceKind kKinds[] = {
     {"hand", "What the camera sees of the hand.", open_hand},
     {"shadertoy", "A shader by the conventions of Shadertoy.", open_shadertoy},
     {"skeleton", "The bones under the skin, in colours that show their speed.", open_skeleton},
+    {"projegraphy", "The animal that the hands look like, painted on them.", open_projegraphy},
     {"view", "A picture as the projector sees it, or what is below, put onto the hand.", open_view},
     {"program", "The pictures of any other program, by handcast.h.", open_program},
 };
@@ -60,7 +62,8 @@ Result<std::unique_ptr<Source>> open_source(const Opening& opening) {
   if (!source) return source;
   for (const auto& [name, value] : opening.element.parameters)
     if (auto set = (*source)->set(name, value); !set)
-      return fail_in(opening.element.what, set.error());
+      return fail_in(opening.element.what.empty() ? opening.element.kind : opening.element.what,
+                     set.error());
   return source;
 }
 

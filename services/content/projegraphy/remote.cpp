@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/content/projegraphy/remote.hpp"
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/input_file.hpp"
+#include "ipc/base/join.hpp"
+#include "ipc/base/unique_fd.hpp"
+#include "renderer/media/picture.hpp"
+#include "services/content/projegraphy/animals.hpp"
+#include "services/content/projegraphy/painter.hpp"
+
+namespace handcast::projegraphy {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::int64_t kHour_ns = 3'600'000'000'000, kRest_ns = 20'000'000'000;
+constexpr std::size_t kMostAnswer = 64 << 10, kMostPainting = 24 << 20;
+constexpr std::size_t kLongestName = 24;
+constexpr std::uint32_t kLargestPainting_px = 2048;
+constexpr std::string_view kDigits =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::string in_base64(std::string_view bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<std::uint8_t>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k < bytes.size() + 1 ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+/// The bytes of a text in base64, with or without "data:...;base64," before it. Empty if it is
+/// none.
+std::string from_base64(std::string_view text) {
+  if (text.starts_with("data:")) text.remove_prefix(std::min(text.size(), text.find(',') + 1));
+  std::string bytes;
+  std::uint32_t group = 0;
+  int bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    const auto digit = kDigits.find(c);
+    if (digit == kDigits.npos) return {};
+    group = group << 6 | static_cast<std::uint32_t>(digit);
+    if ((bits += 6) < 8) continue;
+    bits -= 8;
+    bytes += static_cast<char>(group >> bits & 0xff);
+  }
+  return bytes;
+}
+
+std::string without_slash(std::string url) {
+  while (url.ends_with('/')) url.pop_back();
+  return url;
+}
+
+/// White on black.
+Result<std::string> mask_png(const Silhouette& silhouette) {
+  auto mask = silhouette.mask;
+  for (auto& level : mask.pixels()) level = level ? 255 : 0;
+  return renderer::png_of(std::as_const(mask).view());
+}
+
+json question_of(const Servers& servers, const std::string& png) {
+  std::vector<std::string_view> names;
+  for (const auto& animal : animals()) names.push_back(animal.name);
+  const auto text = fmt::format(
+      "The picture is the shadow of one or two hands. Which of these animals does it resemble "
+      "most: {}? Answer with JSON alone: {{\"animal\": \"NAME\"}}",
+      join(names, ", "));
+  const json words{{"type", "text"}, {"text", text}};
+  const json picture{{"type", "image_url"},
+                     {"image_url", {{"url", "data:image/png;base64," + in_base64(png)}}}};
+  const json message{{"role", "user"}, {"content", json::array({words, picture})}};
+  return {{"model", servers.model},
+          {"max_tokens", 30},
+          {"temperature", 0},
+          {"response_format", {{"type", "json_object"}}},
+          {"messages", json::array({message})}};
+}
+
+/// The animal in a reply; -1 if it is not as asked for, or none of ours.
+int animal_in(const std::string& reply) {
+  const auto whole = json::parse(reply, nullptr, false);
+  const json::json_pointer at("/choices/0/message/content");
+  if (!whole.is_object() || !whole.contains(at) || !whole.at(at).is_string()) return -1;
+  const auto answer = json::parse(whole.at(at).get<std::string>(), nullptr, false);
+  if (!answer.is_object() || !answer.contains("animal") || !answer["animal"].is_string()) return -1;
+  auto name = answer["animal"].get<std::string>();
+  if (name.size() > kLongestName) return -1;
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return projegraphy::animal_of(name);
+}
+
+json commission_of(const Servers& servers, std::string_view animal, const std::string& png) {
+  const json unit{
+      {"enabled", true},      {"module", "canny"},       {"model", "control_v11p_sd15_canny"},
+      {"weight", 1.0},        {"image", in_base64(png)}, {"resize_mode", 1},
+      {"pixel_perfect", true}};
+  return {{"prompt", fmt::format("{} {}, centred, plain background", servers.style, animal)},
+          {"negative_prompt", "hand, fingers, text, nude, gore"},
+          {"width", kPictureSide_px},
+          {"height", kPictureSide_px},
+          {"steps", 20},
+          {"alwayson_scripts", {{"controlnet", {{"args", json::array({unit})}}}}}};
+}
+
+std::string text_of(const json& what) {
+  return what.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+/// True for a PNG file of a size that is worth the memory.
+bool is_small_png(const std::string& bytes) {
+  const auto number_at = [&](std::size_t at) {
+    std::uint32_t number = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      number = number << 8 | static_cast<std::uint8_t>(bytes[at + k]);
+    return number;
+  };
+  constexpr std::size_t kWidth = 16, kHeight = 20, kHead = 24;
+  return bytes.size() > kHead && bytes.starts_with("\x89PNG\r\n") &&
+         std::max(number_at(kWidth), number_at(kHeight)) <= kLargestPainting_px;
+}
+
+/// Reads the bytes of a picture by a file in memory.
+Result<renderer::Texture> decoded(const std::string& bytes) {
+  if (!is_small_png(bytes)) return fail(Errc::bad_data, "not a PNG picture");
+  const UniqueFd memory(memfd_create("handcast-painting", MFD_CLOEXEC));
+  if (!memory || write(memory.get(), bytes.data(), bytes.size()) != std::ssize(bytes))
+    return fail(Errc::unavailable, "there is no memory for a picture");
+  return renderer::read_picture(fmt::format("/proc/self/fd/{}", memory.get()));
+}
+
+/// As large as the pictures of the painter that is built in.
+renderer::Texture resized(const renderer::Texture& picture) {
+  renderer::Texture out(kPictureSide_px, kPictureSide_px);
+  for (int y = 0; y < out.height(); ++y)
+    for (int x = 0; x < out.width(); ++x)
+      out.at(x, y) =
+          picture.at(x * picture.width() / out.width(), y * picture.height() / out.height());
+  return out;
+}
+
+/// Waits unless it is time to stop.
+void rest(std::chrono::milliseconds time, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any never;
+  never.wait_for(lock, stop, time, [] { return false; });
+}
+
+}  // namespace
+
+Result<std::string> Remote::ask(const Servers& servers, const Post& request,
+                                const std::stop_token& stop) {
+  std::chrono::milliseconds pause(400);
+  const auto silent = silent_ns_.find(request.url);
+  if (silent != silent_ns_.end() && now_ns() - silent->second < kRest_ns)
+    return fail(Errc::unavailable, fmt::format("{} is not asked for 20 s, as it does not answer",
+                                               host_of(request.url)));
+  for (int tried = 1;; ++tried, pause *= 2) {
+    const auto now = now_ns();
+    while (!asked_ns_.empty() && now - asked_ns_.front() > kHour_ns) asked_ns_.pop_front();
+    if (std::ssize(asked_ns_) >= servers.per_hour)
+      return fail(Errc::unavailable,
+                  fmt::format("the {} requests of this hour are spent", servers.per_hour));
+    asked_ns_.push_back(now);
+    auto reply = post(request, stop);
+    const bool may_go_away =
+        !reply && (reply.error().code == Errc::unavailable || reply.error().code == Errc::timeout);
+    if (may_go_away) silent_ns_[request.url] = now_ns();
+    if (!may_go_away) silent_ns_.erase(request.url);
+    if (!may_go_away || tried >= servers.tries || stop.stop_requested()) return reply;
+    rest(pause, stop);
+  }
+}
+
+Result<int> Remote::animal_of(const Servers& servers, const Silhouette& silhouette,
+                              const std::stop_token& stop) {
+  const auto png = mask_png(silhouette);
+  if (!png) return tl::make_unexpected(png.error());
+  const Post request{
+      .url = without_slash(servers.recogniser) + "/v1/chat/completions",
+      .json = text_of(question_of(servers, *png)),
+      .key = servers.key,
+      .patience = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * servers.patience_s)),
+      .most_bytes = kMostAnswer};
+  const auto reply = ask(servers, request, stop);
+  if (!reply) return tl::make_unexpected(reply.error());
+  const int animal = animal_in(*reply);
+  if (animal < 0)
+    return fail(Errc::bad_data, fmt::format("{} does not answer with one of the animals",
+                                            host_of(servers.recogniser)));
+  return animal;
+}
+
+Result<renderer::Texture> Remote::picture_of(const Servers& servers, const Silhouette& silhouette,
+                                             std::string_view animal, const std::stop_token& stop) {
+  const auto png = mask_png(silhouette);
+  if (!png) return tl::make_unexpected(png.error());
+  const Post request{
+      .url = without_slash(servers.painter) + "/sdapi/v1/txt2img",
+      .json = text_of(commission_of(servers, animal, *png)),
+      .key = {},
+      .patience = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * servers.patience_s)),
+      .most_bytes = kMostPainting};
+  const auto reply = ask(servers, request, stop);
+  if (!reply) return tl::make_unexpected(reply.error());
+  const auto whole = json::parse(*reply, nullptr, false);
+  const json::json_pointer at("/images/0");
+  const bool has_picture = whole.is_object() && whole.contains(at) && whole.at(at).is_string();
+  const auto picture = has_picture
+                           ? decoded(from_base64(whole.at(at).get_ref<const std::string&>()))
+                           : Result<renderer::Texture>(fail(Errc::bad_data, ""));
+  if (!picture)
+    return fail(Errc::bad_data, fmt::format("{} does not answer with a picture that can be read",
+                                            host_of(servers.painter)));
+  return resized(*picture);
+}
+
+Result<std::string> read_key(const std::string& file) {
+  std::string key;
+  if (file.empty()) {
+    const char* set = std::getenv("HANDCAST_PROJEGRAPHY_KEY");
+    key = set ? set : "";
+  } else {
+    constexpr std::uint64_t kMostKey = 4096;
+    auto read = read_input(file, kMostKey);
+    if (!read) return tl::make_unexpected(read.error());
+    key = std::move(*read);
+  }
+  while (!key.empty() && std::isspace(static_cast<unsigned char>(key.back()))) key.pop_back();
+  const bool is_plain = std::ranges::all_of(key, [](unsigned char c) { return c > 32 && c < 127; });
+  if (!is_plain || (!file.empty() && key.empty()))
+    return fail(Errc::bad_config,
+                "the key of the recogniser is not one: it is one line of "
+                "letters, digits and signs without spaces");
+  return key;
+}
+
+}  // namespace handcast::projegraphy

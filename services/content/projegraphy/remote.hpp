@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <deque>
+#include <map>
+
+#include "services/content/projegraphy/http.hpp"
+#include "services/content/projegraphy/silhouette.hpp"
+
+namespace handcast::projegraphy {
+
+/// Servers that take the place of what is built in; what is empty is not used.
+struct Servers {
+  std::string recogniser;  ///< of the OpenAI kind: the address before /v1/chat/completions
+  std::string painter;     ///< of the Stable Diffusion WebUI: the address before /sdapi/v1/txt2img
+  std::string model;       ///< of the recogniser
+  std::string key;         ///< of the recogniser
+  std::string style = "A cute";  ///< begins the painter's prompt
+  double patience_s = 8;         ///< for each request
+  int per_hour = 60;             ///< requests to both
+  int tries = 3;                 ///< of each
+
+  bool operator==(const Servers&) const = default;
+};
+
+/// Asks the servers, within their budget. What leaves the computer is the mask. A server that does
+/// not answer is left alone for 20 s. One thread.
+class Remote {
+ public:
+  /// Which of animals() a silhouette is. Errors: those of post(), bad_data (not that JSON, or no
+  /// animal of ours: nothing else is shown), unavailable (the budget of the hour is spent).
+  Result<int> animal_of(const Servers& servers, const Silhouette& silhouette,
+                        const std::stop_token& stop);
+  /// A picture of an animal in the shape of a silhouette, kPictureSide_px square, opaque. Errors:
+  /// as animal_of(), bad_data (no picture).
+  Result<renderer::Texture> picture_of(const Servers& servers, const Silhouette& silhouette,
+                                       std::string_view animal, const std::stop_token& stop);
+
+ private:
+  Result<std::string> ask(const Servers& servers, const Post& request, const std::stop_token& stop);
+
+  std::deque<std::int64_t> asked_ns_;              ///< in the last hour
+  std::map<std::string, std::int64_t> silent_ns_;  ///< when an address did not answer
+};
+
+/// The key in a file, or else in $HANDCAST_PROJEGRAPHY_KEY; "" if there is none. Errors
+/// (bad_config): the file cannot be read or holds no key.
+Result<std::string> read_key(const std::string& file);
+
+}  // namespace handcast::projegraphy

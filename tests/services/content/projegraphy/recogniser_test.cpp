@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/content/projegraphy/recogniser.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "ipc/base/clock.hpp"
+#include "tests/services/content/projegraphy/shadow_player.hpp"
+
+namespace handcast::projegraphy {
+namespace {
+
+int count() { return static_cast<int>(animals().size()); }
+const Animal& animal(int index) { return animals()[static_cast<std::size_t>(index)]; }
+
+/// How many of all animals are recognised when a person holds each of them once.
+int recognised_of(ShadowPlayer& player, int take, const Sloppiness& faults, double& most_ms) {
+  int right = 0;
+  for (int i = 0; i < count(); ++i) {
+    player.hold(animal(i), 100 * take + i, faults, take % 2 == 1);
+    const auto begin_ns = now_ns();
+    const auto found = recogniser().recognise(player.silhouette());
+    most_ms = std::max(most_ms, ns_to_ms(now_ns() - begin_ns));
+    if (!found) continue;
+    right += found->animal == i;
+    if (found->animal != i)
+      std::printf("  %s is taken for %s\n", animal(i).name.data(),
+                  animal(found->animal).name.data());
+  }
+  return right;
+}
+
+TEST(Recogniser, KnowsAtLeastTwentyFourAnimalsByTheirNames) {
+  EXPECT_GE(count(), 24);
+  for (int i = 0; i < count(); ++i) EXPECT_EQ(animal_of(animal(i).name), i);
+  EXPECT_EQ(animal_of("unicorn"), -1);
+}
+
+// Nothing was tuned on these people and tries; both hands take each part in turn.
+TEST(Recogniser, RecognisesTheAnimalsOfOtherPeople) {
+  double most_ms = 0;
+  int right = 0, all = 0;
+  for (const int person : {31, 32, 33, 34, 35}) {
+    ShadowPlayer player(person);
+    int its = 0;
+    for (const int take : {0, 1}) its += recognised_of(player, take, {}, most_ms);
+    std::printf("person %d: %.1f %%\n", person, 50. * its / count());
+    EXPECT_GE(its, 0.85 * 2 * count()) << person;
+    right += its;
+    all += 2 * count();
+  }
+  std::printf("top-1 %.1f %%, at most %.0f ms\n", 100. * right / all, most_ms);
+  EXPECT_GE(right, 0.9 * all);
+}
+
+// Twice the spread of people's bones and half as much again of all angles.
+TEST(Recogniser, UnusualHandsThatHoldThemBadlyCostLittle) {
+  const Sloppiness faults{9, 4.5, 10.5, 18, 0.009};
+  double most_ms = 0;
+  int right = 0;
+  constexpr int kPeople = 3;
+  for (int person = 41; person < 41 + kPeople; ++person) {
+    ShadowPlayer player(person, {.length_spread = 0.08, .width_spread = 0.12});
+    right += recognised_of(player, person % 2, faults, most_ms);
+  }
+  std::printf("top-1 %.1f %%\n", 100. * right / (kPeople * count()));
+  EXPECT_GE(right, 0.8 * kPeople * count());
+}
+
+TEST(Recogniser, FindsTheJointsOfTheHandsInTheirSilhouette) {
+  ShadowPlayer player(36);
+  const auto projector = content::viewer_of(player.calibration());
+  for (int i = 0; i < count(); ++i) {
+    player.hold(animal(i), i);
+    const auto silhouette = player.silhouette();
+    const auto found = recogniser().place(silhouette, i);
+    ASSERT_TRUE(found);
+    // The mirror image of two hands that do the same is the same.
+    const bool is_same = found->is_mirrored && animal(i).hands.size() == 2;
+    EXPECT_TRUE(is_same || !found->is_mirrored) << animal(i).name;
+    ASSERT_EQ(found->joints_px.size(), 26 * animal(i).hands.size());
+    float sum = 0;
+    for (std::size_t j = 0; j < found->joints_px.size(); ++j) {
+      const auto& hand = player.hands()[is_same ? 1 - j / 26 : j / 26];
+      sum += glm::distance(found->joints_px[j],
+                           silhouette.from_projector(projector.pixel_of(hand.joints_m[j % 26])));
+    }
+    EXPECT_LT(sum / static_cast<float>(found->joints_px.size()), 0.17f * found->unit_px)
+        << animal(i).name;
+  }
+}
+
+TEST(Recogniser, AnotherHandMakesTheMirrorImage) {
+  ShadowPlayer player(0);
+  player.hold(animal(animal_of("dog")), 0, {0, 0, 0, 0, 0}, true);
+  const auto found = recogniser().recognise(player.silhouette());
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->animal, animal_of("dog"));
+  EXPECT_TRUE(found->is_mirrored);
+}
+
+TEST(Recogniser, NothingIsNoAnimal) {
+  EXPECT_FALSE(recogniser().recognise({}));
+  EXPECT_FALSE(recogniser().recognise(silhouette_of({})));
+  FlatHand flat{&content::made_hand(content::Side::left), {}};
+  flat.px.resize(flat.mesh->vertex_count(), glm::vec2(NAN));
+  EXPECT_FALSE(recogniser().recognise(silhouette_of({&flat, 1})));
+}
+
+}  // namespace
+}  // namespace handcast::projegraphy

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "services/content/projegraphy/remote.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <atomic>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "ipc/base/unique_fd.hpp"
+#include "renderer/media/picture.hpp"
+#include "services/content/projegraphy/studio.hpp"
+#include "tests/scratch.hpp"
+#include "tests/services/content/projegraphy/shadow_player.hpp"
+
+namespace handcast::projegraphy {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A server that answers each request by a function of it; "" holds the connection.
+class LocalServer {
+ public:
+  using Answer = std::function<std::string(const std::string& request)>;
+  explicit LocalServer(Answer answer) : answer_(std::move(answer)) {
+    listener_ = UniqueFd(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    EXPECT_EQ(bind(listener_.get(), reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(listen(listener_.get(), 8), 0);
+    getsockname(listener_.get(), reinterpret_cast<sockaddr*>(&address), &size);
+    port_ = ntohs(address.sin_port);
+    thread_ = std::jthread([this](const std::stop_token& stop) { serve(stop); });
+  }
+  std::string url() const { return "http://127.0.0.1:" + std::to_string(port_); }
+  int requests() const { return requests_; }
+  /// The last one; after it was answered.
+  const std::string& request() const { return request_; }
+
+ private:
+  static bool is_ready(int fd) {
+    pollfd waiting{fd, POLLIN, 0};
+    return poll(&waiting, 1, 20) == 1;
+  }
+  void serve(const std::stop_token& stop) {
+    std::vector<UniqueFd> held;
+    while (!stop.stop_requested()) {
+      if (!is_ready(listener_.get())) continue;
+      UniqueFd peer(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC));
+      request_ = read_from(peer.get(), stop);
+      ++requests_;
+      const auto answer = answer_(request_);
+      if (answer.empty()) {
+        held.push_back(std::move(peer));
+        continue;
+      }
+      for (std::size_t sent = 0; sent < answer.size();) {
+        const auto now = send(peer.get(), answer.data() + sent, answer.size() - sent, MSG_NOSIGNAL);
+        if (now <= 0) break;
+        sent += static_cast<std::size_t>(now);
+      }
+    }
+  }
+  static std::string read_from(int fd, const std::stop_token& stop) {
+    std::string text;
+    std::size_t whole = std::string::npos;
+    while (text.size() < whole && !stop.stop_requested()) {
+      if (!is_ready(fd)) continue;
+      char buffer[65536];
+      const auto got = recv(fd, buffer, sizeof(buffer), 0);
+      if (got <= 0) break;
+      text.append(buffer, static_cast<std::size_t>(got));
+      const auto end = text.find("\r\n\r\n"), at = text.find("Content-Length: ");
+      if (end != text.npos && at < end)
+        whole = end + 4 + static_cast<std::size_t>(std::atoi(text.c_str() + at + 16));
+    }
+    return text;
+  }
+
+  Answer answer_;
+  UniqueFd listener_;
+  int port_ = 0;
+  std::atomic<int> requests_ = 0;
+  std::string request_;
+  std::jthread thread_;
+};
+
+std::string http(int status, const std::string& body) {
+  return "HTTP/1.1 " + std::to_string(status) +
+         " X\r\nContent-Length: " + std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" +
+         body;
+}
+/// The reply of a chat.
+std::string chat(const std::string& content) {
+  std::string quoted;
+  for (const char c : content) quoted += c == '"' ? "\\\"" : std::string(1, c);
+  return http(200, R"({"choices":[{"message":{"role":"assistant","content":")" + quoted + "\"}}]}");
+}
+
+class RemoteTest : public testing::Test {
+ protected:
+  RemoteTest() {
+    player_.hold(animals()[static_cast<std::size_t>(projegraphy::animal_of("cat"))], 0,
+                 {0, 0, 0, 0, 0});
+    silhouette_ = player_.silhouette();
+    servers_.model = "a-model";
+    servers_.patience_s = 2;
+  }
+  Result<int> ask(const LocalServer& server) {
+    servers_.recogniser = server.url();
+    return remote_.animal_of(servers_, silhouette_, {});
+  }
+
+  ShadowPlayer player_{0};
+  Silhouette silhouette_;
+  Servers servers_;
+  Remote remote_;
+};
+
+TEST_F(RemoteTest, AGoodServerNamesTheAnimalAndGetsTheMaskAndTheKey) {
+  const LocalServer server([](const std::string&) { return chat(R"({"animal": "Owl"})"); });
+  servers_.key = "sk-secret";
+  const auto animal = ask(server);
+  ASSERT_TRUE(animal) << animal.error().what;
+  EXPECT_EQ(*animal, projegraphy::animal_of("owl"));
+  const auto& request = server.request();
+  EXPECT_NE(request.find("POST /v1/chat/completions "), std::string::npos);
+  EXPECT_NE(request.find("Authorization: Bearer sk-secret"), std::string::npos);
+  EXPECT_NE(request.find("\"a-model\""), std::string::npos);
+  EXPECT_NE(request.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
+}
+
+TEST_F(RemoteTest, OnlyOurAnimalsInTheRightFormAreTaken) {
+  const std::vector<std::string> answers{
+      chat("owl"),
+      chat(R"({"animal": "unicorn"})"),
+      chat(R"({"animal": ["owl"]})"),
+      chat(R"(["owl"])"),
+      chat(R"({"animal": "owlowlowlowlowlowlowlowlowlowlowl"})"),
+      http(200, "<html>owl</html>"),
+      http(200, R"({"choices":[]})"),
+      http(200, R"({"choices":{"0":{"message":{"content":7}}}})"),
+      http(200, ""),
+      http(200, std::string(50'000, '['))};
+  servers_.per_hour = 100;
+  for (const auto& answer : answers) {
+    const LocalServer server([&](const std::string&) { return answer; });
+    const auto animal = ask(server);
+    ASSERT_FALSE(animal) << answer.substr(0, 200);
+    EXPECT_EQ(animal.error().code, Errc::bad_data) << animal.error().what;
+    EXPECT_EQ(server.requests(), 1);
+  }
+}
+
+TEST_F(RemoteTest, AServerThatIsBusyIsAskedAgain) {
+  int count = 0;
+  const LocalServer server([&](const std::string&) {
+    return ++count < 3 ? http(503, "busy") : chat(R"({"animal": "bear"})");
+  });
+  const auto animal = ask(server);
+  ASSERT_TRUE(animal) << animal.error().what;
+  EXPECT_EQ(server.requests(), 3);
+}
+
+TEST_F(RemoteTest, AWrongKeyIsNotTriedAgainAndIsInNoSentence) {
+  const LocalServer server([](const std::string&) { return http(401, "who?"); });
+  servers_.key = "sk-secret";
+  const auto animal = ask(server);
+  ASSERT_FALSE(animal);
+  EXPECT_EQ(animal.error().code, Errc::bad_config);
+  EXPECT_NE(animal.error().what.find("check the key"), std::string::npos);
+  EXPECT_EQ(animal.error().what.find("secret"), std::string::npos);
+  EXPECT_EQ(server.requests(), 1);
+}
+
+TEST_F(RemoteTest, AHugeReplyIsCutOff) {
+  const LocalServer server([](const std::string&) { return http(200, std::string(8 << 20, ' ')); });
+  const auto animal = ask(server);
+  ASSERT_FALSE(animal);
+  EXPECT_EQ(animal.error().code, Errc::bad_data);
+  EXPECT_NE(animal.error().what.find("more than"), std::string::npos) << animal.error().what;
+}
+
+TEST_F(RemoteTest, AServerThatIsSilentOrAbsentIsGivenUp) {
+  servers_.patience_s = 0.2;
+  servers_.tries = 2;
+  std::string absent;
+  {
+    const LocalServer server([](const std::string&) { return ""; });
+    const auto animal = ask(server);
+    ASSERT_FALSE(animal);
+    EXPECT_EQ(animal.error().code, Errc::timeout) << animal.error().what;
+    EXPECT_EQ(server.requests(), 2);
+    EXPECT_FALSE(ask(server));  // it is left alone
+    EXPECT_EQ(server.requests(), 2);
+    absent = server.url();
+  }
+  servers_.recogniser = absent;
+  const auto animal = Remote().animal_of(servers_, silhouette_, {});
+  ASSERT_FALSE(animal);
+  EXPECT_EQ(animal.error().code, Errc::unavailable) << animal.error().what;
+}
+
+TEST_F(RemoteTest, TheBudgetOfAnHourIsKept) {
+  const LocalServer server([](const std::string&) { return chat(R"({"animal": "bear"})"); });
+  servers_.per_hour = 2;
+  EXPECT_TRUE(ask(server));
+  EXPECT_TRUE(ask(server));
+  const auto third = ask(server);
+  ASSERT_FALSE(third);
+  EXPECT_NE(third.error().what.find("are spent"), std::string::npos);
+  EXPECT_EQ(server.requests(), 2);
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  int bits = 0;
+  std::uint32_t group = 0;
+  for (const unsigned char c : bytes) {
+    group = group << 8 | c;
+    for (bits += 8; bits >= 6;) text += kDigits[group >> (bits -= 6) & 63];
+  }
+  if (bits > 0) text += kDigits[group << (6 - bits) & 63];
+  while (text.size() % 4) text += '=';
+  return text;
+}
+
+TEST_F(RemoteTest, AServerPaintsInTheShapeOfTheMask) {
+  renderer::Image<std::uint8_t> grey(64, 64, 200);
+  grey.at(0, 0) = 7;
+  const auto png = renderer::png_of(std::as_const(grey).view());
+  ASSERT_TRUE(png);
+  const LocalServer server(
+      [&](const std::string&) { return http(200, R"({"images":[")" + base64(*png) + "\"]}"); });
+  servers_.painter = server.url() + "/";
+  const auto picture = remote_.picture_of(servers_, silhouette_, "owl", {});
+  ASSERT_TRUE(picture) << picture.error().what;
+  EXPECT_EQ(picture->width(), kPictureSide_px);
+  EXPECT_EQ(picture->at(0, 0), 0xff070707u);
+  EXPECT_EQ(picture->at(kPictureSide_px - 1, 300), 0xffc8c8c8u);
+  EXPECT_NE(server.request().find("POST /sdapi/v1/txt2img "), std::string::npos);
+  EXPECT_NE(server.request().find("A cute owl"), std::string::npos);
+  EXPECT_NE(server.request().find("controlnet"), std::string::npos);
+  EXPECT_EQ(server.request().find("Authorization"), std::string::npos);
+}
+
+TEST_F(RemoteTest, WhatIsNoPictureIsNotShown) {
+  renderer::Image<std::uint8_t> large(2400, 8, 1);
+  const auto too_large = base64(*renderer::png_of(std::as_const(large).view()));
+  for (const std::string& body :
+       {std::string(R"({"images":[]})"), std::string(R"({"images":["%%%"]})"),
+        std::string(R"({"images":["iVBORw0KGgoAAAA="]})"), std::string(R"({"images":[7]})"),
+        R"({"images":[")" + too_large + "\"]}"}) {
+    const LocalServer server([&](const std::string&) { return http(200, body); });
+    servers_.painter = server.url();
+    const auto picture = remote_.picture_of(servers_, silhouette_, "owl", {});
+    ASSERT_FALSE(picture) << body.substr(0, 100);
+    EXPECT_EQ(picture.error().code, Errc::bad_data);
+  }
+}
+
+TEST_F(RemoteTest, WhatIsBuiltInTakesOver) {
+  const std::array meshes{&content::made_hand(content::Side::left),
+                          &content::made_hand(content::Side::right)};
+  const LocalServer wrong([](const std::string&) { return http(200, "no"); });
+  servers_.recogniser = servers_.painter = wrong.url();
+  Studio studio(meshes);
+  const auto alone = studio.order(silhouette_), helped = studio.order(silhouette_, servers_);
+  ASSERT_NE(alone, helped);
+  alone->wait();
+  helped->wait();
+  ASSERT_TRUE(helped->recognised());
+  EXPECT_EQ(helped->recognised()->animal, projegraphy::animal_of("cat"));
+  EXPECT_EQ(helped->picture().pixels(), alone->picture().pixels());
+  EXPECT_EQ(wrong.requests(), 2);
+}
+
+// A silent server must not hold up the end of the program.
+TEST_F(RemoteTest, AStudioEndsWhileAServerIsSilent) {
+  const LocalServer server([](const std::string&) { return ""; });
+  servers_.recogniser = server.url();
+  servers_.patience_s = 600;
+  std::shared_ptr<const Order> order;
+  {
+    Studio studio(
+        {&content::made_hand(content::Side::left), &content::made_hand(content::Side::right)});
+    order = studio.order(silhouette_, servers_);
+    while (server.requests() == 0) std::this_thread::sleep_for(5ms);
+  }
+  EXPECT_TRUE(order->is_done());
+}
+
+TEST(Key, IsReadFromAFileAndSaysNothingOfItself) {
+  const test::Scratch scratch;
+  const auto file = scratch.path() / "key";
+  const auto put = [&](const std::string& text) { std::ofstream(file) << text; };
+  put("sk-abc\n");
+  EXPECT_EQ(*read_key(file.string()), "sk-abc");
+  for (const char* wrong : {"", "sk secret\n", "sk-a\r\nX-Header: secret"}) {
+    put(wrong);
+    const auto key = read_key(file.string());
+    ASSERT_FALSE(key) << wrong;
+    EXPECT_EQ(key.error().what.find("secret"), std::string::npos);
+  }
+  EXPECT_FALSE(read_key("/nowhere/key"));
+}
+
+}  // namespace
+}  // namespace handcast::projegraphy
