@@ -46,6 +46,9 @@ TEST(ContentChain, ChoosesTheKindByTheNameOfTheFile) {
   EXPECT_EQ(one("rtsp://camera/1").kind, "film");
   EXPECT_EQ(one("folder.fs/name").kind, "picture") << "another path may be one";
   EXPECT_EQ(one("builtin:atlas").kind, "pattern");
+  EXPECT_EQ(one("projegraphy").kind, "projegraphy") << "a source that needs no name";
+  EXPECT_EQ(one("projegraphy").what, "");
+  EXPECT_EQ(one("look:paint").kind, "look");
   EXPECT_EQ(one("builtin:atlas").what, "atlas");
 }
 

@@ -107,6 +107,18 @@ class Stillness {
   bool was_judged_ = true;
 };
 
+/// Errors (bad_config): none that can be used. It is shown to people, and must hold no secret.
+Result<void> check_address(std::string_view name, const std::string& address) {
+  if (projegraphy::host_of(address).empty())
+    return fail(Errc::bad_config,
+                fmt::format("{} is no address of a server: write http://HOST:PORT", name));
+  if (address.find('@') != address.npos)
+    return fail(
+        Errc::bad_config,
+        fmt::format("{} holds a name or a password: put the key into a file (key=FILE)", name));
+  return {};
+}
+
 /// The animal that the hands look like, painted on the skin of one of them.
 class ProjegraphySource final : public SettableSource {
  public:
@@ -138,10 +150,8 @@ class ProjegraphySource final : public SettableSource {
 
   /// Errors, too: an address that is none, a file without a key.
   Result<void> set(std::string_view name, std::string_view value) override {
-    if ((name == "recogniser" || name == "painter") && !value.empty() &&
-        projegraphy::host_of(std::string(value)).empty())
-      return fail(Errc::bad_config,
-                  fmt::format("{} is no address of a server: write http://HOST:PORT", name));
+    if ((name == "recogniser" || name == "painter") && !value.empty())
+      if (auto usable = check_address(name, std::string(value)); !usable) return usable;
     if (name == "key") {
       auto key = projegraphy::read_key(std::string(value));
       if (!key) return tl::make_unexpected(key.error());

@@ -149,6 +149,7 @@ std::optional<Recognised> Recogniser::Shapes::best(const Silhouette& silhouette,
   if (silhouette.area_px == 0) return std::nullopt;
   const Shape seen(silhouette);
   auto fits = coarse_fits(seen, only);
+  if (fits.empty()) return std::nullopt;
   const auto count = std::min(fits.size(), kRefined * (only >= 0 ? 1 : 4));
   std::ranges::partial_sort(fits, fits.begin() + static_cast<std::ptrdiff_t>(count), {},
                             &Fit::distance);
@@ -171,11 +172,14 @@ std::optional<Recognised> Recogniser::Shapes::best(const Silhouette& silhouette,
   return result;
 }
 
-Recogniser::Recogniser(const std::array<const renderer::HandMesh*, 2>& meshes) {
+Recogniser::Recogniser(const std::array<const renderer::HandMesh*, 2>& meshes,
+                       const std::stop_token& stop) {
   auto shapes = std::make_unique<Shapes>();
   for (std::size_t animal = 0; animal < animals().size(); ++animal)
-    for (const auto& variant : kVariants)
+    for (const auto& variant : kVariants) {
+      if (stop.stop_requested()) break;
       shapes->prototypes.push_back(prototype_of(animal, variant, meshes));
+    }
   shapes_ = std::move(shapes);
 }
 Recogniser::Recogniser(Recogniser&&) noexcept = default;

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <stop_token>
 
 #include "services/content/projegraphy/animals.hpp"
 #include "services/content/projegraphy/silhouette.hpp"
@@ -35,8 +36,10 @@ struct Recognised {
 /// Recognition Using Contour Fragments"), and areas. Const functions by any thread.
 class Recogniser {
  public:
-  /// Copies what it needs of the meshes, left and right.
-  explicit Recogniser(const std::array<const renderer::HandMesh*, 2>& meshes);
+  /// Copies what it needs of the meshes, left and right. It takes most of a second; a stop leaves
+  /// it incomplete.
+  explicit Recogniser(const std::array<const renderer::HandMesh*, 2>& meshes,
+                      const std::stop_token& stop = {});
   Recogniser(Recogniser&&) noexcept;
   ~Recogniser();
 

@@ -68,7 +68,7 @@ std::shared_ptr<const Order> Studio::order(Silhouette silhouette, const Servers&
 
 std::shared_ptr<Order> Studio::next(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (changed_.wait(lock, stop, [&] { return !waiting_.empty(); })) {
+  while (changed_.wait(lock, stop, [&] { return !waiting_.empty(); }) && !stop.stop_requested()) {
     auto order = std::move(waiting_.front());
     waiting_.pop_front();
     if (order.use_count() > 1) return order;
@@ -78,7 +78,7 @@ std::shared_ptr<Order> Studio::next(const std::stop_token& stop) {
 
 void Studio::work(const std::stop_token& stop) {
   give_way();
-  const Recogniser recogniser({&meshes_[0], &meshes_[1]});
+  const Recogniser recogniser({&meshes_[0], &meshes_[1]}, stop);
   while (const auto order = next(stop)) make(recogniser, *order, stop);
 }
 

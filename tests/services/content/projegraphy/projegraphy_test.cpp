@@ -206,6 +206,19 @@ TEST(Projegraphy, TwoHandsTogetherAreOneAnimalAndApartTwo) {
   EXPECT_EQ(left.picture().pixels(), alone.picture().pixels());
 }
 
+TEST(Projegraphy, AddressesWithoutAServerOrWithASecretAreRefused) {
+  const auto source = content::opened(content::opening_of("projegraphy"));
+  EXPECT_TRUE(source->set("recogniser", "https://host/path"));
+  EXPECT_TRUE(source->set("painter", "http://127.0.0.1:7860"));
+  EXPECT_TRUE(source->set("painter", ""));
+  EXPECT_FALSE(source->set("painter", "host:7860"));
+  const auto secret = source->set("recogniser", "https://me:hush@host");
+  ASSERT_FALSE(secret);
+  EXPECT_EQ(secret.error().what.find("hush"), std::string::npos);
+  EXPECT_FALSE(source->set("key", "/nowhere/key"));
+  EXPECT_FALSE(source->set("budget", "-1"));
+}
+
 TEST(Projegraphy, TheHandsShareAPictureAndNobodysIsNotPainted) {
   ShadowPlayer player(56);
   const std::array meshes{&content::made_hand(content::Side::left),

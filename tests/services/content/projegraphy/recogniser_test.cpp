@@ -54,6 +54,22 @@ TEST(Recogniser, RecognisesTheAnimalsOfOtherPeople) {
   EXPECT_GE(right, 0.9 * all);
 }
 
+// The perspective is another one there.
+TEST(Recogniser, RecognisesThemNearerAndAtTheEdgeOfTheLight) {
+  int right = 0, all = 0;
+  for (const glm::vec3& by_m : {glm::vec3(0, 0, -0.2f), {0.1f, 0.05f, 0}, {-0.12f, -0.04f, 0.2f}}) {
+    ShadowPlayer player(38);
+    for (int i = 0; i < count(); ++i, ++all) {
+      player.hold(animal(i), 300 + i);
+      player.move(by_m);
+      const auto found = recogniser().recognise(player.silhouette());
+      right += found && found->animal == i;
+    }
+  }
+  std::printf("top-1 %.1f %%\n", 100. * right / all);
+  EXPECT_GE(right, 0.85 * all);
+}
+
 // Twice the spread of people's bones and half as much again of all angles.
 TEST(Recogniser, UnusualHandsThatHoldThemBadlyCostLittle) {
   const Sloppiness faults{9, 4.5, 10.5, 18, 0.009};
