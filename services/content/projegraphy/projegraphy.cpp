@@ -132,7 +132,8 @@ class ProjegraphySource final : public SettableSource {
              plain_parameter("painter", "Address of a server that paints it",
                              Parameter::Kind::text),
              plain_parameter("model", "Model of the recogniser", Parameter::Kind::text),
-             plain_parameter("key", "File with the key of the recogniser", Parameter::Kind::text),
+             plain_parameter("key", "File with the address of the recogniser and its key",
+                             Parameter::Kind::text),
              plain_parameter("style", "Begins the prompt of the painter", Parameter::Kind::text),
              number_parameter("patience", "Seconds for a request", 0.1, 60, 8),
              number_parameter("budget", "Requests in an hour", 0, 10000, 60),
@@ -196,7 +197,7 @@ class ProjegraphySource final : public SettableSource {
     servers.painter = text("painter");
     servers.model = text("model").empty() ? "gpt-4o" : text("model");
     if (!text("style").empty()) servers.style = text("style");
-    servers.key = key_;
+    servers.key = key_.for_server(servers.recogniser);
     servers.patience_s = number("patience");
     servers.per_hour = static_cast<int>(number("budget"));
     return servers;
@@ -270,7 +271,8 @@ class ProjegraphySource final : public SettableSource {
 
   Viewer projector_;
   std::shared_ptr<Studio> studio_;
-  std::string key_ = projegraphy::read_key("").value_or("");  ///< in no sentence
+  projegraphy::ServerKey key_ =
+      projegraphy::read_key("").value_or(projegraphy::ServerKey());  ///< in no sentence
   SkinPrint print_;  ///< of the thread that bakes, while there is one
   Stillness stillness_;
   std::optional<Silhouette> last_;        ///< that was looked at

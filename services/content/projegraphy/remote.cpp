@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/input_file.hpp"
@@ -232,23 +233,32 @@ Result<renderer::Texture> Remote::picture_of(const Servers& servers, const Silho
   return resized(*picture);
 }
 
-Result<std::string> read_key(const std::string& file) {
-  std::string key;
+std::string ServerKey::for_server(const std::string& address) const {
+  return !server.empty() && without_slash(address) == without_slash(server) ? key : "";
+}
+
+Result<ServerKey> read_key(const std::string& file) {
+  std::string text;
   if (file.empty()) {
     const char* set = std::getenv("HANDCAST_PROJEGRAPHY_KEY");
-    key = set ? set : "";
+    if (!set) return ServerKey();
+    text = set;
   } else {
     constexpr std::uint64_t kMostKey = 4096;
     auto read = read_input(file, kMostKey);
     if (!read) return tl::make_unexpected(read.error());
-    key = std::move(*read);
+    text = std::move(*read);
   }
-  while (!key.empty() && std::isspace(static_cast<unsigned char>(key.back()))) key.pop_back();
-  const bool is_plain = std::ranges::all_of(key, [](unsigned char c) { return c > 32 && c < 127; });
-  if (!is_plain || (!file.empty() && key.empty()))
+  std::istringstream words(text);
+  ServerKey key;
+  std::string more;
+  const bool has_two = static_cast<bool>(words >> key.server >> key.key) && !(words >> more);
+  const bool is_plain =
+      std::ranges::all_of(key.key, [](unsigned char c) { return c > 32 && c < 127; });
+  if (!has_two || !is_plain || host_of(key.server).empty())
     return fail(Errc::bad_config,
-                "the key of the recogniser is not one: it is one line of "
-                "letters, digits and signs without spaces");
+                "the key of the recogniser cannot be used: write the address of its server and the "
+                "key, with a space between them, in one line");
   return key;
 }
 

@@ -42,8 +42,16 @@ class Remote {
   std::map<std::string, std::int64_t> silent_ns_;  ///< when an address did not answer
 };
 
-/// The key in a file, or else in $HANDCAST_PROJEGRAPHY_KEY; "" if there is none. Errors
-/// (bad_config): the file cannot be read or holds no key.
-Result<std::string> read_key(const std::string& file);
+/// A key, and the one server that gets it: whoever may choose the recogniser does not get the key.
+struct ServerKey {
+  std::string server, key;
+
+  /// The key for a server; "" if it is for another one.
+  std::string for_server(const std::string& address) const;
+};
+
+/// "ADDRESS KEY" in a file, or else in $HANDCAST_PROJEGRAPHY_KEY; empty if there is none. Errors
+/// (bad_config): the file cannot be read or does not hold these two words.
+Result<ServerKey> read_key(const std::string& file);
 
 }  // namespace handcast::projegraphy

@@ -298,17 +298,26 @@ TEST_F(RemoteTest, AStudioEndsWhileAServerIsSilent) {
   EXPECT_TRUE(order->is_done());
 }
 
-TEST(Key, IsReadFromAFileAndSaysNothingOfItself) {
+TEST(Key, IsForTheServerThatItsFileNamesAndSaysNothingOfItself) {
   const test::Scratch scratch;
   const auto file = scratch.path() / "key";
-  const auto put = [&](const std::string& text) { std::ofstream(file) << text; };
-  put("sk-abc\n");
-  EXPECT_EQ(*read_key(file.string()), "sk-abc");
-  for (const char* wrong : {"", "sk secret\n", "sk-a\r\nX-Header: secret"}) {
-    put(wrong);
-    const auto key = read_key(file.string());
-    ASSERT_FALSE(key) << wrong;
-    EXPECT_EQ(key.error().what.find("secret"), std::string::npos);
+  const auto write = [&](const std::string& text) { std::ofstream(file) << text; };
+  write("https://api.example.org/ sk-abc\n");
+  const auto key = read_key(file.string());
+  ASSERT_TRUE(key) << key.error().what;
+  EXPECT_EQ(key->for_server("https://api.example.org"), "sk-abc");
+  for (const char* other : {"https://api.example.org.evil.net", "http://api.example.org",
+                            "https://api.example.org:444", "https://evil.net", ""})
+    EXPECT_EQ(key->for_server(other), "") << other;
+  EXPECT_EQ(ServerKey().for_server(""), "");
+  // Any other file of one word, e.g. a password, is none.
+  for (const char* wrong :
+       {"", "secret", "https://api.example.org", "secret secret",
+        "https://api.example.org secret secret", "https://api.example.org secr\x01et"}) {
+    write(wrong);
+    const auto refused = read_key(file.string());
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().what.find("secret"), std::string::npos);
   }
   EXPECT_FALSE(read_key("/nowhere/key"));
 }
