@@ -150,8 +150,9 @@ Result<Certificate> open_certificate(const std::filesystem::path& file,
                                      const std::vector<std::string>& names) {
   std::error_code unknown;
   // An empty one is of a program that was ended, or of a full disk.
-  if (const auto size = std::filesystem::file_size(file, unknown); unknown || size == 0)
-    return make(file, names);
+  const bool is_empty = std::filesystem::is_regular_file(file, unknown) &&
+                        std::filesystem::file_size(file, unknown) == 0;
+  if (!std::filesystem::exists(file, unknown) || is_empty) return make(file, names);
   if (!is_private(file)) return unusable(file, "is not a file of this user alone");
   auto pem = read_input(file, kMostText);
   if (!pem) return unusable(file, "cannot be read");

@@ -178,12 +178,12 @@ TEST(Fingerprint, ContentDependsOnItsSectionAndOnWhatPredictsTheHandsThatItReact
 }
 
 TEST(Fingerprint, TheDeskDependsOnAllThatItLetsPeopleChange) {
-  expect_reads(
-      "desk", {},
-      {"desk", "light", "hand", "cascade", "projector.frame_wait_ms", "projector.brightness",
-       "projector.gamma", "projector.fade_s", "content.left", "content.right", "content.transition",
-       "content.transition_s", "content.shading", "content.gravity"},
-      {"desk.process.standby", "cascade.mask.forearm_mm"});
+  expect_reads("desk", {},
+               {"desk", "light", "hand", "cascade", "twin.tracker", "twin.detector", "twin.image",
+                "projector.lamp", "projector.frame_wait_ms", "projector.brightness",
+                "projector.gamma", "projector.fade_s", "content.left", "content.right",
+                "content.transition", "content.transition_s", "content.shading", "content.gravity"},
+               {"desk.process.standby", "cascade.mask.forearm_mm", "twin.tracker.rate_hz"});
 }
 
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
