@@ -32,7 +32,7 @@ HeldHand seen(HeldHand hand, float turn, float nod, float spin, glm::vec2 wrist_
   return hand;
 }
 /// The thumb in front of shut fingers.
-HeldHand thumb_shut(HeldHand hand) { return with_thumb(std::move(hand), 14, 18); }
+HeldHand thumb_shut(const HeldHand& hand) { return with_thumb(hand, 14, 18); }
 /// The right hand as the mirror image of the left one.
 std::vector<HeldHand> with_mirror_image(const HeldHand& left) {
   HeldHand right = left;

@@ -187,8 +187,8 @@ class ProjegraphySource final : public SettableSource {
     last_ = silhouette;
     std::optional<KeptHand> kept;
     if (other) kept.emplace(*other);
-    commission_.emplace(studio_->order(std::move(silhouette), servers()), KeptHand(*moment.hand),
-                        std::move(kept));
+    commission_.emplace(Commission{studio_->order(std::move(silhouette), servers()),
+                                   KeptHand(*moment.hand), std::move(kept)});
   }
 
   projegraphy::Servers servers() const {

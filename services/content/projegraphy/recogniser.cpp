@@ -13,7 +13,8 @@ namespace handcast::projegraphy {
 namespace {
 
 constexpr float kRadian = std::numbers::pi_v<float> / 180;
-constexpr float kMostTurn_deg = 48, kTurnStep_deg = 8;
+constexpr float kTurnStep_deg = 8;
+constexpr int kTurnSteps = 6;         ///< to either side
 constexpr std::size_t kRefined = 10;  ///< coarse placements that are refined
 constexpr float kTurnCost = 0.025f;   ///< of a silhouette that is turned by 45 degrees
 constexpr float kAreaCost = 0.35f;    ///< of the area that only one of two shapes covers
@@ -134,7 +135,8 @@ struct Recogniser::Shapes {
     for (const auto& prototype : prototypes) {
       if (only >= 0 && prototype.animal != static_cast<std::size_t>(only)) continue;
       for (const bool is_mirrored : {false, true})
-        for (float turn = -kMostTurn_deg; turn <= kMostTurn_deg; turn += kTurnStep_deg) {
+        for (int step = -kTurnSteps; step <= kTurnSteps; ++step) {
+          const float turn = kTurnStep_deg * static_cast<float>(step);
           Fit fit{&prototype, {.angle_rad = turn * kRadian, .is_mirrored = is_mirrored}, 0};
           fit.distance = outline_distance(fit, seen);
           fits.push_back(fit);

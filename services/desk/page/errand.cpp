@@ -47,6 +47,7 @@ struct Errand::Child {
 
   static Child start(std::vector<std::string> words) {
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (auto& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     Child child;

@@ -83,7 +83,7 @@ std::string words_of(const cues::Target& target, std::span<const Control> contro
   if (target.numbers.empty() || target.control >= controls.size())
     return words_of(target.assignment);
   constexpr std::array kCurves{"", ", slow at the end", ", slow at both ends"};
-  const auto value =
+  auto value =
       fmt::format("{} \u2192 {:g}", controls[target.control].path, fmt::join(target.numbers, ", "));
   if (target.fade_s <= 0) return value;
   return value + fmt::format(" in {:g} s{}", target.fade_s,

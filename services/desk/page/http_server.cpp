@@ -11,7 +11,6 @@
 #include <cctype>
 #include <charconv>
 #include <condition_variable>
-#include <cstring>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -99,7 +98,7 @@ ssize_t read_flow(void* context, std::uint64_t, char* buffer, std::size_t most) 
       return MHD_CONTENT_READER_END_OF_STREAM;
   }
   const auto count = std::min(most, flow.waiting.size() - flow.sent);
-  std::memcpy(buffer, flow.waiting.data() + flow.sent, count);
+  std::copy_n(flow.waiting.data() + flow.sent, count, buffer);
   flow.sent += count;
   return static_cast<ssize_t>(count);
 }

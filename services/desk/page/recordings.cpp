@@ -59,6 +59,7 @@ std::vector<Recording> recordings_in(const fs::path& folder) {
   std::ranges::sort(folders, std::greater());
   if (folders.size() > kMostRecordings) folders.resize(kMostRecordings);
   std::vector<Recording> all;
+  all.reserve(folders.size());
   for (const auto& [when, path] : folders) all.push_back(look_at(path));
   return all;
 }
