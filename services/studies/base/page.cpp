@@ -48,25 +48,28 @@ std::string bars_of(const Comparison& comparison, const std::string& unit) {
   double most = 1;
   for (const auto& values : comparison.values)
     for (const double value : values) most = std::max(most, value);
-  const double per_ms = (kHeight - kBottom - kTop) / most, floor = kHeight - kBottom;
+  const double per_unit = (kHeight - kBottom - kTop) / most, floor = kHeight - kBottom;
   std::string svg = fmt::format(
       "<svg viewBox=\"0 0 {} {}\" role=\"img\" "
       "aria-label=\"values by subject and condition\">",
       kWidth, kHeight);
   const double decade = std::pow(10, std::floor(std::log10(most)));
   const double step = decade * (most > 5 * decade ? 1 : most > 2 * decade ? 0.5 : 0.2);
-  for (double ms = 0; ms <= most; ms += step)
+  const int lines = static_cast<int>(most / step);  // 2 to 10
+  for (int line = 0; line <= lines; ++line) {
+    const double value = line * step;
     svg += fmt::format(
         "<line class=\"axis\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
         "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>",
-        kLeft, kWidth, floor - ms * per_ms, kLeft - 6, floor - ms * per_ms + 4, ms);
+        kLeft, kWidth, floor - value * per_unit, kLeft - 6, floor - value * per_unit + 4, value);
+  }
   const auto subjects = static_cast<double>(comparison.subjects.size()),
              conditions = static_cast<double>(comparison.conditions.size());
   const double group = (kWidth - kLeft) / subjects, bar = std::min(30.0, 0.7 * group / conditions);
   for (std::size_t s = 0; s < comparison.subjects.size(); ++s) {
     const double middle = kLeft + group * (static_cast<double>(s) + 0.5);
     for (std::size_t c = 0; c < comparison.conditions.size(); ++c) {
-      const double height = std::max(0.0, comparison.values[c][s]) * per_ms;
+      const double height = std::max(0.0, comparison.values[c][s]) * per_unit;
       svg += fmt::format(
           "<rect class=\"bar{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
           "height=\"{:.1f}\"><title>{}, {}: {:.2f} {}</title></rect>",

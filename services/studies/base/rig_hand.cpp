@@ -108,7 +108,7 @@ Result<void> RigHand::set(const std::vector<std::string>& assignments) {
     auto before = as_now(*board_, path);
     if (!before) return tl::make_unexpected(before.error());
     // What is so already was left by a program that was killed: the value of the file comes back.
-    afterwards_.push_back(same(*before, assignment) ? path : std::move(*before));
+    afterwards_.push_back(same(*before, assignment) ? path : *before);
   }
   const auto set = board_->set(assignments, program_);
   return set ? Result<void>() : tl::make_unexpected(set.error());

@@ -70,6 +70,7 @@ std::string difficulties_of(const CharacterFindings& findings) {
 std::vector<CharacterSession> character_sessions(int subject, int tests) {
   const auto order = latin_order(static_cast<std::size_t>(subject - 1), 2);
   std::vector<CharacterSession> sessions;
+  sessions.reserve(static_cast<std::size_t>(kCharacterTraining + tests));
   for (int number = 0; number < kCharacterTraining + tests; ++number)
     sessions.push_back({.number = number,
                         .is_training = number < kCharacterTraining,
@@ -80,6 +81,7 @@ std::vector<CharacterSession> character_sessions(int subject, int tests) {
 
 std::vector<std::string> settings_of(bool is_corrected) {
   std::vector<std::string> assignments;
+  assignments.reserve(8);
   for (const char* assignment : {"cascade.predict.method=velocity", "cascade.predict.still_mm_s=0",
                                  "cascade.ladder.rung=landmarks", "cascade.skin.fit=false",
                                  "cascade.filter.method=none", "cascade.correct.method=none",

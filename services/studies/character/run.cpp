@@ -110,10 +110,10 @@ class Play {
                session.face == Face::palm ? "palm" : "back");
     std::fflush(stdout);
     if (auto set = hand_.set(settings_of(session.is_corrected)); !set) return set;
-    const auto seed = twin::mixed(
-        static_cast<std::uint64_t>(options_.seed) ^
-        twin::mixed(static_cast<std::uint64_t>(1000 * options_.subject + session.number) ^
-                    twin::mixed(log_.earlier().rows.size())));
+    const auto seed = twin::mixed(static_cast<std::uint64_t>(options_.seed) ^
+                                  twin::mixed((1000 * static_cast<std::uint64_t>(options_.subject) +
+                                               static_cast<std::uint64_t>(session.number)) ^
+                                              twin::mixed(log_.earlier().rows.size())));
     CharacterGame game(seed, options_.rounds);
     while (!game.is_over()) {
       if (daemon::stop_requested()) return fail(Errc::disconnected, "the session was left");

@@ -26,13 +26,15 @@ Course::Course(const CourseSettings& settings) : settings_(settings) {
 void Course::begin_session() {
   number_ = 0;
   belief_ = PsychometricBelief();
-  const auto which = static_cast<std::uint64_t>(10 * settings_.subject + session_);
+  const auto subject = static_cast<std::uint64_t>(settings_.subject),
+             which = 10 * subject + static_cast<std::uint64_t>(session_);
   procedure_ = make_procedure(settings_.procedure, settings_.seed ^ twin::mixed(which));
 }
 
 bool Course::is_late_first() const {
-  const auto trial = static_cast<std::uint64_t>(1000 * session_ + number_);
-  const auto subject = static_cast<std::uint64_t>(settings_.subject);
+  const auto session = static_cast<std::uint64_t>(session_),
+             trial = 1000 * session + static_cast<std::uint64_t>(number_),
+             subject = static_cast<std::uint64_t>(settings_.subject);
   return twin::mixed(settings_.seed ^ twin::mixed(trial ^ twin::mixed(subject))) >> 63;
 }
 

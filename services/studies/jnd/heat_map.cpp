@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 
 #include "renderer/media/picture.hpp"
@@ -33,7 +34,7 @@ struct Marks {
 /// Dark over red and yellow to white. `share`: 0..1.
 std::uint32_t heat(double share) {
   const auto part = [share](double from) {
-    return static_cast<std::uint32_t>(255 * std::clamp(3 * (share - from), 0.0, 1.0) + 0.5);
+    return static_cast<std::uint32_t>(std::lround(255 * std::clamp(3 * (share - from), 0.0, 1.0)));
   };
   return 0xff000000u | part(2.0 / 3) << 16 | part(1.0 / 3) << 8 | part(0);
 }

@@ -10,6 +10,7 @@ namespace {
 /// `count` numbers from `least` to `most`, evenly spaced on a logarithmic scale.
 std::vector<double> log_spaced(double least, double most, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     values.push_back(least * std::pow(most / least, static_cast<double>(i) / (count - 1)));
   return values;

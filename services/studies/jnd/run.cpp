@@ -90,12 +90,15 @@ Result<std::string> write_picture(const JndOptions& options) {
   constexpr double kDelay_ms = 20;
   // The moment at which the hand is fastest shows most.
   double fastest_s = 0, most = 0;
-  for (double at_s = 0.5; at_s < kMotion_s; at_s += 0.1)
-    if (const auto speeds = stimulus->speeds_deg_s(at_s, at_s + 0.07); !speeds.empty())
-      if (const double mean = summary_of(speeds).mean; mean > most) {
-        most = mean;
-        fastest_s = at_s + 0.033;
-      }
+  constexpr int kMoments = 110;
+  for (int moment = 0; moment < kMoments; ++moment) {
+    const double at_s = 0.5 + 0.1 * moment;
+    const auto speeds = stimulus->speeds_deg_s(at_s, at_s + 0.07);
+    const double mean = speeds.empty() ? 0 : summary_of(speeds).mean;
+    if (mean <= most) continue;
+    most = mean;
+    fastest_s = at_s + 0.033;
+  }
   const int width = options.stimulus.width_px, height = options.stimulus.height_px;
   renderer::Texture row(3 * width, height);
   int column = 0;

@@ -154,7 +154,7 @@ Result<Stimulus> Stimulus::open(const StimulusSettings& settings) {
                                        .calibration = calibration,
                                        .twin = std::move(*twin),
                                        .mesh = std::move(*mesh),
-                                       .bone_fit = std::move(bone_fit),
+                                       .bone_fit = bone_fit,
                                        .skin = std::move(skin),
                                        .content = renderer::MipChain(*content, true),
                                        .painter = renderer::make_cpu_painter(width, height),

@@ -27,8 +27,9 @@ constexpr double kPause_s = 0.4;
 
 /// Where in the motion both intervals of a trial begin.
 double start_s(const CourseSettings& course, const Trial& trial) {
-  const auto key =
-      static_cast<std::uint64_t>(10'000 * course.subject + 1000 * trial.session + trial.number);
+  const auto session =
+      10 * static_cast<std::uint64_t>(course.subject) + static_cast<std::uint64_t>(trial.session);
+  const auto key = 1000 * session + static_cast<std::uint64_t>(trial.number);
   const auto seed = course.seed;
   return kLongestStart_s * static_cast<double>(twin::mixed(seed ^ twin::mixed(key + 77)) >> 11) *
          0x1p-53;
