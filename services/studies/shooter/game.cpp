@@ -11,7 +11,7 @@ namespace {
 
 using Scene = ShooterScene;
 
-constexpr int kColumns = 5, kRows = 3;
+constexpr int kColumns = 5, kMiddle = 2, kRows = 3;
 constexpr float kApart_mm = 9, kReach_mm = 4.2f;  ///< between aliens; within which one is hit
 constexpr float kShot_mm_s = 70, kBomb_mm_s = 26, kShip_mm_s = 90;
 constexpr float kMarch_mm_s = 9, kFaster = 1.25f;  ///< of the first wave; by wave
@@ -33,7 +33,7 @@ void ShooterGame::begin_wave() {
   scene_.bombs_mm.clear();
   for (int row = 0; row < kRows; ++row)
     for (int column = 0; column < kColumns; ++column)
-      scene_.aliens.push_back({{kApart_mm * static_cast<float>(column - kColumns / 2),
+      scene_.aliens.push_back({{kApart_mm * static_cast<float>(column - kMiddle),
                                 Scene::kTop_mm - 4 - kApart_mm * static_cast<float>(row)},
                                row});
 }
