@@ -133,8 +133,8 @@ void Metrics::add_landmark(double error_px, double error_mm) {
   landmark_mm_.add(static_cast<float>(error_mm));
 }
 
-/// What people would notice, by the model of a viewer. Light that is late without a fill ends inside
-/// the hand along half of its outline: that counts as all edges.
+/// What people would notice, by the model of a viewer. Light that is late without a fill ends
+/// inside the hand along half of its outline: that counts as all edges.
 void Metrics::write_perception(nlohmann::json& json) const {
   std::vector<double> speeds_deg_s;
   for (const float speed : speed_m_s_.kept())
