@@ -47,7 +47,7 @@ class ViewSource final : public SettableSource {
     if (std::ranges::count(own, name, &Parameter::name) > 0)
       return SettableSource::set(name, value);
     if (std::ranges::count(all_, name, &Parameter::name) > 0) return inner_->set(name, value);
-    return Source::set(name, value);
+    return SettableSource::set(name, value);
   }
   bool is_stale() const override { return inner_->is_stale(); }
 
@@ -56,7 +56,7 @@ class ViewSource final : public SettableSource {
     bool has_changed = take_change() || moment.frame == 0;
     if (number("bake") == 0) is_baked_ = false;
     if (!is_baked_) {
-      const auto looked = look(moment);
+      auto looked = look(moment);
       if (!looked) return looked;
       has_changed = *looked || has_changed;
     }
@@ -69,7 +69,7 @@ class ViewSource final : public SettableSource {
   Result<bool> look(const Moment& moment) {
     Moment its = moment;
     its.frame = pictures_;
-    const auto drew = inner_->draw(its, {}, picture_);
+    auto drew = inner_->draw(its, {}, picture_);
     if (!drew) return drew;
     pictures_ += *drew;
     const bool is_there = !moment.hand->positions_m.empty();
