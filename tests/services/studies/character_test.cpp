@@ -10,6 +10,11 @@
 #include "services/studies/character/picture.hpp"
 #include "tests/services/studies/scripted_hand.hpp"
 
+#ifdef __SANITIZE_ADDRESS__
+/// Cairo keeps patterns of fontconfig until the process ends.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libfontconfig"; }
+#endif
+
 namespace handcast::study {
 namespace {
 
