@@ -66,6 +66,11 @@ RigHand::~RigHand() {
     (void)board_->set(afterwards_, program_);  // a rig that is down needs nothing
 }
 
+Result<renderer::HandMesh> RigHand::mesh() const {
+  const auto& files = board_->filed().hand;
+  return renderer::load_hand_or_default(side_ == msg::Side::left ? files.left : files.right, side_);
+}
+
 Result<void> RigHand::wait() {
   constexpr int kPatience_ms = 100;
   const auto waited = handcast_wait(content_.get(), kPatience_ms);

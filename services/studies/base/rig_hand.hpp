@@ -10,7 +10,7 @@
 #include "config/live/live_board.hpp"
 #include "ipc/base/result.hpp"
 #include "renderer/base/image.hpp"
-#include "renderer/hand/hand_posture.hpp"
+#include "renderer/hand/hand_mesh.hpp"
 
 struct handcast_content;
 
@@ -29,8 +29,8 @@ class RigHand {
   RigHand(RigHand&&) noexcept;
   ~RigHand();
 
-  /// The rig as its file has it.
-  const config::Rig& rig() const { return board_->filed(); }
+  /// The mesh that the rig draws for it. Errors: those of renderer::load_hand_or_default().
+  Result<renderer::HandMesh> mesh() const;
   /// Waits for a new sample of the tracker, at most 100 ms. Errors: disconnected (the rig is down).
   Result<void> wait();
   using Joints = std::array<glm::vec3, msg::kJoints>;

@@ -7,12 +7,10 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
-#include "ipc/base/exit_code.hpp"
-#include "ipc/base/log.hpp"
-#include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/lab/twin/random.hpp"
 #include "services/studies/base/rig_hand.hpp"
+#include "services/studies/base/study_command.hpp"
 #include "services/studies/character/course.hpp"
 #include "services/studies/character/picture.hpp"
 
@@ -21,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostSubjects = 999;
+constexpr std::string_view kLogs = "character";
 constexpr int kWidth_px = 1024, kHeight_px = 640;
 constexpr char kNotes[] =
     R"(Start it beside a rig that is up. The palm shows a character, four finger tips show one each: bend the finger with the
@@ -40,49 +38,20 @@ struct Options {
   msg::Side side = msg::Side::left;
 };
 
-std::string log_name(int subject) { return fmt::format("character-{:02}.csv", subject); }
-
-/// The files, and the logs in the folders.
-std::vector<fs::path> logs_in(const std::vector<std::string>& names) {
-  std::vector<fs::path> files;
-  for (const auto& name : names) {
-    std::error_code failed;
-    if (!fs::is_directory(name, failed)) {
-      files.emplace_back(name);
-      continue;
-    }
-    for (int subject = 1; subject <= kMostSubjects; ++subject)
-      if (auto file = fs::path(name) / log_name(subject); fs::exists(file, failed))
-        files.push_back(std::move(file));
-  }
-  return files;
-}
-
 Result<std::string> analyse_logs(const Options& options) {
-  std::vector<StudyTable> logs;
-  for (const auto& file : logs_in(options.analysed)) {
-    auto log = read_study_table(file);
-    if (!log) return tl::make_unexpected(log.error());
-    logs.push_back(std::move(*log));
-  }
-  const auto findings = analyse_characters(logs);
+  const auto logs = read_logs(options.analysed, kLogs);
+  if (!logs) return tl::make_unexpected(logs.error());
+  const auto findings = analyse_characters(*logs);
   if (!findings) return tl::make_unexpected(findings.error());
-  std::string text = describe(findings->seconds, "s") + "By pair of sessions, as in the paper:\n" +
-                     describe(findings->pairs, "s");
-  if (!options.json_file.empty())
-    if (auto written = write_whole(
-            options.json_file,
-            to_json(*findings).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
-                "\n");
-        !written)
-      return tl::make_unexpected(written.error());
-  if (options.page_folder.empty()) return text;
-  std::error_code ignored;
-  fs::create_directories(options.page_folder, ignored);
-  const auto page = fs::path(options.page_folder) / "index.html";
-  if (auto written = write_whole(page, page_of(*findings)); !written)
+  const std::string text = describe(findings->seconds, "s") +
+                           "By pair of sessions, as in the paper:\n" +
+                           describe(findings->pairs, "s");
+  if (auto written = write_json(options.json_file, to_json(*findings)); !written)
     return tl::make_unexpected(written.error());
-  return text + page.string() + "\n";
+  if (options.page_folder.empty()) return text;
+  return write_page(options.page_folder, page_of(*findings)).map([&](const auto& file) {
+    return text + file.string() + "\n";
+  });
 }
 
 /// One subject at the rig.
@@ -156,15 +125,12 @@ class Play {
 
 Result<std::string> run(const Options& options) {
   if (!options.analysed.empty()) return analyse_logs(options);
-  auto log =
-      StudyLog::open(fs::path(options.folder) / log_name(options.subject), character_columns());
+  auto log = StudyLog::open(fs::path(options.folder) / log_name(kLogs, options.subject),
+                            character_columns());
   if (!log) return tl::make_unexpected(log.error());
   auto hand = RigHand::open(options.rig, options.side, kWidth_px, kHeight_px, "study character");
   if (!hand) return tl::make_unexpected(hand.error());
-  const bool is_left = options.side == msg::Side::left;
-  const auto& files = hand->rig().hand;
-  const auto mesh =
-      renderer::load_hand_or_default(is_left ? files.left : files.right, options.side);
+  const auto mesh = hand->mesh();
   if (!mesh) return tl::make_unexpected(mesh.error());
   CharacterPicture picture(*mesh, kWidth_px, kHeight_px);
   return Play(options, std::move(*log), std::move(*hand), std::move(picture)).run();
@@ -181,14 +147,7 @@ int run_character(int argc, char** argv) {
   line.add("--subject N", options.subject, "The subject, a number instead of a name",
            {1, kMostSubjects});
   line.add("--seed S", options.seed, "Seed of all random numbers", {0, 1e15});
-  line.add("--rig NAME", options.rig, "Which rig, if several are up");
-  line.add(
-      "--hand left|right",
-      [&](const std::string& side) {
-        options.side = side == "left" ? msg::Side::left : msg::Side::right;
-        return Result<void>();
-      },
-      "The hand that is lit");
+  add_rig_hand(line, options.rig, options.side);
   line.add("--sessions N", options.tests, "Sessions after the training", {2, 200});
   line.add("--rounds N", options.rounds, "Rounds of a session", {1, 200});
   line.add("--difficulty D", options.difficulty,
@@ -198,13 +157,7 @@ int run_character(int argc, char** argv) {
   line.add("--page DIR", options.page_folder, "Writes the results as a page, DIR/index.html");
   if (const auto code = line.answered(argc, argv)) return *code;
   daemon::install_stop_signals();  // so that the rig shows again what it showed before
-  const auto done = run(options);
-  if (!done) {
-    fmt::print(stderr, "handcast study character: {}\n", printable(done.error().what));
-    return exit_code_of(done.error());
-  }
-  fmt::print("{}", *done);
-  return kExitDone;
+  return end_of("handcast study character", run(options));
 }
 
 }  // namespace handcast::study

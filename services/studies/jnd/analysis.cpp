@@ -9,26 +9,12 @@
 
 #include "ipc/base/quote.hpp"
 #include "services/studies/base/page.hpp"
+#include "services/studies/base/study_command.hpp"
 
 namespace handcast::study {
 namespace {
 
 namespace fs = std::filesystem;
-
-Result<std::vector<fs::path>> logs_in(const std::string& name) {
-  std::error_code failed;
-  if (!fs::is_directory(name, failed)) return std::vector<fs::path>{name};
-  std::vector<fs::path> logs;
-  for (const auto& entry : fs::directory_iterator(name, failed))
-    if (const auto file = entry.path().filename().string();
-        file.starts_with("subject-") && file.ends_with(".csv") && !file.ends_with(".light.csv"))
-      logs.push_back(entry.path());
-  std::ranges::sort(logs);
-  if (logs.empty())
-    return fail(Errc::bad_config,
-                fmt::format("{}: there are no logs of subjects (subject-NN.csv)", name));
-  return logs;
-}
 
 constexpr std::size_t kProtocol = 2, kStimulus = 9;
 
@@ -117,7 +103,7 @@ Result<JndFindings> analyse(const std::vector<std::string>& files) {
   JndFindings findings;
   std::vector<Measured> measured;
   for (const auto& name : files) {
-    const auto logs = logs_in(name);
+    const auto logs = logs_in(name, kSubjectLogs);
     if (!logs) return tl::make_unexpected(logs.error());
     for (const auto& log : *logs)
       if (auto added = add_file(log, findings, measured); !added)

@@ -52,7 +52,7 @@ struct SessionResult {
   PsychometricEstimate fit;               ///< from all answers
 };
 
-inline constexpr int kMostSubjects = 999;
+inline constexpr std::string_view kSubjectLogs = "subject";  ///< the kind of the logs: log_name()
 
 /// What a course is made of.
 struct CourseSettings {

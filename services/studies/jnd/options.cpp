@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "ipc/base/command_line.hpp"
+#include "services/studies/base/study_command.hpp"
 #include "services/studies/jnd/run.hpp"
 
 namespace handcast::study {

@@ -7,10 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/command_line.hpp"
-#include "ipc/base/exit_code.hpp"
-#include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "renderer/media/picture.hpp"
+#include "services/studies/base/study_command.hpp"
 #include "services/studies/jnd/analysis.hpp"
 #include "services/studies/jnd/heat_map.hpp"
 #include "services/studies/jnd/subjects.hpp"
@@ -20,38 +19,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMotion_s = 12;  ///< of which the speeds are taken
+constexpr const char* kHeatFile = "looked.png";  ///< beside the page
+constexpr double kMotion_s = 12;                 ///< of which the speeds are taken
 
 std::string file_of(const JndOptions& options, std::string_view end) {
-  return (fs::path(options.folder) / fmt::format("subject-{:02}{}", options.course.subject, end))
-      .string();
-}
-
-Result<void> write_json(const JndOptions& options, const nlohmann::json& json) {
-  if (options.json_file.empty()) return {};
-  return write_whole(options.json_file,
-                     json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  auto file = fs::path(options.folder) / log_name(kSubjectLogs, options.course.subject);
+  return file.replace_extension(end).string();
 }
 
 Result<std::string> analyse_files(const JndOptions& options) {
   const auto findings = analyse(options.analysed);
   if (!findings) return tl::make_unexpected(findings.error());
-  if (auto written = write_json(options, to_json(*findings)); !written)
+  if (auto written = write_json(options.json_file, to_json(*findings)); !written)
     return tl::make_unexpected(written.error());
   std::string text = describe(findings->comparison, "ms");
   for (const auto& sentence : findings->unfinished) text += sentence + "\n";
   if (options.page_folder.empty()) return text;
-  std::error_code ignored;
-  fs::create_directories(options.page_folder, ignored);
   const auto heat = heat_map(options.analysed);
-  const fs::path folder(options.page_folder);
+  const auto page = write_page(options.page_folder, page_of(*findings, heat ? kHeatFile : ""));
+  if (!page) return tl::make_unexpected(page.error());
   if (heat)
-    if (auto written = renderer::write_png(folder / "looked.png", heat->view()); !written)
+    if (auto written = renderer::write_png(page->parent_path() / kHeatFile, heat->view()); !written)
       return tl::make_unexpected(written.error());
-  const auto page = folder / "index.html";
-  if (auto written = write_whole(page, page_of(*findings, heat ? "looked.png" : "")); !written)
-    return tl::make_unexpected(written.error());
-  return text + page.string() + "\n";
+  return text + page->string() + "\n";
 }
 
 Result<std::string> simulate(const JndOptions& options) {
@@ -59,7 +49,7 @@ Result<std::string> simulate(const JndOptions& options) {
   if (!stimulus) return tl::make_unexpected(stimulus.error());
   const auto jnds_ms = predicted_jnds_ms(stimulus->speeds_deg_s(0, kMotion_s));
   const auto json = simulate_subjects(jnds_ms, options.subjects, options.course.seed);
-  if (auto written = write_json(options, json); !written)
+  if (auto written = write_json(options.json_file, json); !written)
     return tl::make_unexpected(written.error());
   std::string text = fmt::format(
       "predicted JND for {}: {:.2f} ms at edges, {:.2f} ms with the fill; {} subjects, seed {}\n\n"
@@ -138,13 +128,7 @@ int run_jnd(int argc, char** argv) {
   const auto parsed = parse_jnd(argc, argv);
   const auto text = parsed.map([](const auto& each) { return each.text; });
   if (const auto code = answered("handcast study jnd", text)) return *code;
-  const auto done = run(parsed->options);
-  if (!done) {
-    fmt::print(stderr, "handcast study jnd: {}\n", printable(done.error().what));
-    return exit_code_of(done.error());
-  }
-  fmt::print("{}", *done);
-  return kExitDone;
+  return end_of("handcast study jnd", run(parsed->options));
 }
 
 }  // namespace handcast::study

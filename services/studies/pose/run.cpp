@@ -8,11 +8,9 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
-#include "ipc/base/exit_code.hpp"
-#include "ipc/base/log.hpp"
-#include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/studies/base/rig_hand.hpp"
+#include "services/studies/base/study_command.hpp"
 #include "services/studies/pose/picture.hpp"
 
 namespace handcast::study {
@@ -20,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kLogs = "pose";
 constexpr int kWidth_px = 640, kHeight_px = 400;
 constexpr double kTaught_s = 3, kStill_mm = 6;
 constexpr char kNotes[] =
@@ -39,35 +38,14 @@ struct Options {
   msg::Side side = msg::Side::left;
 };
 
-std::string log_name(int person) { return fmt::format("pose-{:02}.csv", person); }
-
 Result<std::string> report(const Options& options) {
-  std::vector<StudyTable> logs;
-  for (const auto& name : options.reported) {
-    std::error_code failed;
-    std::vector<fs::path> files{name};
-    if (fs::is_directory(name, failed)) {
-      files.clear();
-      for (int person = 1; person <= 999; ++person)
-        if (auto file = fs::path(name) / log_name(person); fs::exists(file, failed))
-          files.push_back(std::move(file));
-      if (files.empty())
-        return fail(Errc::bad_config, fmt::format("{}: there are no logs (pose-NN.csv)", name));
-    }
-    for (const auto& file : files) {
-      auto log = read_study_table(file);
-      if (!log) return tl::make_unexpected(log.error());
-      logs.push_back(std::move(*log));
-    }
-  }
-  const auto page = pose_report(logs);
+  const auto logs = read_logs(options.reported, kLogs);
+  if (!logs) return tl::make_unexpected(logs.error());
+  const auto page = pose_report(*logs);
   if (!page) return tl::make_unexpected(page.error());
-  std::error_code ignored;
-  fs::create_directories(options.page_folder, ignored);
-  const auto file = fs::path(options.page_folder) / "index.html";
-  if (auto written = write_whole(file, *page); !written)
-    return tl::make_unexpected(written.error());
-  return file.string() + "\n";
+  return write_page(options.page_folder, *page).map([](const auto& file) {
+    return file.string() + "\n";
+  });
 }
 
 /// Waits until the hand is held still, and keeps its pose.
@@ -122,7 +100,8 @@ Result<std::string> play(const Options& options, RigHand& hand, PosePicture& pic
   auto poses = options.poses_file.empty() ? Result<std::vector<HeldPose>>(builtin_poses())
                                           : read_poses(options.poses_file);
   if (!poses) return tl::make_unexpected(poses.error());
-  auto log = StudyLog::open(fs::path(options.folder) / log_name(options.person), pose_columns());
+  auto log =
+      StudyLog::open(fs::path(options.folder) / log_name(kLogs, options.person), pose_columns());
   if (!log) return tl::make_unexpected(log.error());
   const auto time = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   const auto seed = static_cast<std::uint64_t>(options.seed) + log->earlier().rows.size();
@@ -161,9 +140,7 @@ Result<std::string> run(const Options& options) {
   if (!options.reported.empty()) return report(options);
   auto hand = RigHand::open(options.rig, options.side, kWidth_px, kHeight_px, "study pose");
   if (!hand) return tl::make_unexpected(hand.error());
-  const auto& files = hand->rig().hand;
-  const auto mesh = renderer::load_hand_or_default(
-      options.side == msg::Side::left ? files.left : files.right, options.side);
+  const auto mesh = hand->mesh();
   if (!mesh) return tl::make_unexpected(mesh.error());
   PosePicture picture(*mesh, kWidth_px, kHeight_px);
   return options.taught.empty() ? play(options, *hand, picture) : teach(options, *hand, picture);
@@ -176,29 +153,17 @@ int run_pose(int argc, char** argv) {
   CommandLine line("handcast study pose",
                    "Guess the Pose: poses to match, for play and for rehabilitation.", kNotes);
   line.add("[DIR]", options.folder, "The folder of the logs");
-  line.add("--person N", options.person, "The person, a number instead of a name", {1, 999});
+  line.add("--person N", options.person, "The person, a number instead of a name",
+           {1, kMostSubjects});
   line.add("--poses FILE.csv", options.poses_file, "Poses that somebody has taught");
   line.add("--teach NAME", options.taught, "Adds the pose that is held still to --poses");
   line.add("--report FILE", options.reported, "Reports on logs, or a folder of logs");
   line.add("--page DIR", options.page_folder, "Where the report is written");
-  line.add("--rig NAME", options.rig, "Which rig, if several are up");
-  line.add(
-      "--hand left|right",
-      [&](const std::string& side) {
-        options.side = side == "left" ? msg::Side::left : msg::Side::right;
-        return Result<void>();
-      },
-      "The hand");
+  add_rig_hand(line, options.rig, options.side);
   line.add("--seed S", options.seed, "Seed of the order of the poses", {0, 1e15});
   if (const auto code = line.answered(argc, argv)) return *code;
   daemon::install_stop_signals();  // so that the rig shows again what it showed before
-  const auto done = run(options);
-  if (!done) {
-    fmt::print(stderr, "handcast study pose: {}\n", printable(done.error().what));
-    return exit_code_of(done.error());
-  }
-  fmt::print("{}", *done);
-  return kExitDone;
+  return end_of("handcast study pose", run(options));
 }
 
 }  // namespace handcast::study

@@ -12,11 +12,10 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
-#include "ipc/base/exit_code.hpp"
-#include "ipc/base/log.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "renderer/hand/hand_posture.hpp"
 #include "services/studies/base/rig_hand.hpp"
+#include "services/studies/base/study_command.hpp"
 #include "services/studies/shooter/picture.hpp"
 
 namespace handcast::study {
@@ -71,12 +70,10 @@ struct Options {
   double seconds = 0, seed = 1;
 };
 
-Result<int> play(const Options& options) {
+Result<std::string> play(const Options& options) {
   auto hand = RigHand::open(options.rig, options.side, kWidth_px, kHeight_px, "study shooter");
   if (!hand) return tl::make_unexpected(hand.error());
-  const auto& files = hand->rig().hand;
-  const auto mesh = renderer::load_hand_or_default(
-      options.side == msg::Side::left ? files.left : files.right, options.side);
+  const auto mesh = hand->mesh();
   if (!mesh) return tl::make_unexpected(mesh.error());
   ShooterPicture picture(*mesh, kWidth_px, kHeight_px);
   ShooterGame game(static_cast<std::uint64_t>(options.seed));
@@ -98,7 +95,7 @@ Result<int> play(const Options& options) {
     if (auto shown = hand->show(picture.draw(game.scene(), options.face, now_s - begin_s)); !shown)
       return tl::make_unexpected(shown.error());
   }
-  return best;
+  return fmt::format("Best score: {}\n", best);
 }
 
 }  // namespace
@@ -117,14 +114,7 @@ int run_shooter(int argc, char** argv) {
   Options options;
   CommandLine line("handcast study shooter", "A game on the palm: aliens come from the fingers.",
                    kNotes);
-  line.add("--rig NAME", options.rig, "Which rig, if several are up");
-  line.add(
-      "--hand left|right",
-      [&](const std::string& side) {
-        options.side = side == "left" ? msg::Side::left : msg::Side::right;
-        return Result<void>();
-      },
-      "The hand that is played on");
+  add_rig_hand(line, options.rig, options.side);
   line.add(
       "--face palm|back",
       [&](const std::string& face) {
@@ -137,13 +127,7 @@ int run_shooter(int argc, char** argv) {
   line.add("--seed S", options.seed, "Seed of all random numbers", {0, 1e15});
   if (const auto code = line.answered(argc, argv)) return *code;
   daemon::install_stop_signals();  // so that the rig shows again what it showed before
-  const auto best = play(options);
-  if (!best) {
-    fmt::print(stderr, "handcast study shooter: {}\n", printable(best.error().what));
-    return exit_code_of(best.error());
-  }
-  fmt::print("Best score: {}\n", *best);
-  return kExitDone;
+  return end_of("handcast study shooter", play(options));
 }
 
 }  // namespace handcast::study

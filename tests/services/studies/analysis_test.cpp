@@ -94,7 +94,8 @@ TEST_F(Analysis, WhatIsNoStudyIsRefusedWithASentence) {
               HasSubstr("no column 'subject'"));
   EXPECT_THAT(analyse({write("b.csv", "subject,condition,jnd_ms\n1,fill,x\n")}).error().what,
               HasSubstr("row 1: jnd_ms is 'x'"));
-  EXPECT_THAT(analyse({scratch_.path().string()}).error().what, HasSubstr("no logs of subjects"));
+  EXPECT_THAT(analyse({scratch_.path().string()}).error().what,
+              HasSubstr("there are no logs (subject-NN.csv)"));
   EXPECT_THAT(analyse({"/nowhere.csv"}).error().what, HasSubstr("/nowhere.csv"));
   const auto header = print_csv(Course::columns());
   EXPECT_THAT(
