@@ -10,8 +10,8 @@ namespace {
 
 std::string fault_of_size(const HandMesh& hand) {
   constexpr float kFarthest_m = 1, kShortest_m = 0.02f;
-  constexpr std::size_t kWristJoint = 1;
-  const glm::vec3 wrist(hand.rest[kWristJoint][3]);
+  constexpr std::size_t kRootJoint = 1;
+  const glm::vec3 wrist(hand.rest[kRootJoint][3]);
   float farthest_m = 0;
   for (const auto& joint : hand.rest)
     farthest_m = std::max(farthest_m, glm::length(glm::vec3(joint[3]) - wrist));

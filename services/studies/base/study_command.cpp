@@ -64,8 +64,9 @@ Result<void> write_json(const std::string& file, const nlohmann::json& json) {
 Result<fs::path> write_page(const fs::path& folder, std::string_view html) {
   std::error_code ignored;  // write_whole() says what is wrong
   fs::create_directories(folder, ignored);
-  const auto file = folder / "index.html";
-  return write_whole(file, html).map([&] { return file; });
+  auto file = folder / "index.html";
+  if (auto written = write_whole(file, html); !written) return tl::make_unexpected(written.error());
+  return file;
 }
 
 int end_of(std::string_view command, const Result<std::string>& done) {
