@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/estimate/error_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handcast::renderer {
+namespace {
+
+constexpr auto kErrors = static_cast<Eigen::Index>(error::kCount);
+constexpr Eigen::Index kNumbers = 2 * kLandmarks;  ///< of a detection
+constexpr double kNotSeen_px = 1e4, kFirstSigma_px = 3;
+
+constexpr double square(double x) { return x * x; }
+constexpr Eigen::Index index(std::size_t error) { return static_cast<Eigen::Index>(error); }
+
+/// Errors as a vector of Eigen.
+auto as_vector(HandErrors& errors) { return Eigen::Map<Eigen::VectorXd>(errors.data(), kErrors); }
+
+/// The share of each error that is left after a time.
+HandErrors kept_after(double seconds) {
+  HandErrors kept;
+  kept.fill(1);
+  const auto fade = [&](std::size_t first, int count, double share) {
+    std::fill_n(kept.begin() + index(first), count, share);
+  };
+  for_priors([&](const ErrorPrior& prior) { fade(prior.first, prior.count, prior.kept(seconds)); });
+  fade(error::kBend, kFingers * kBendsOfFinger, std::exp(-seconds / kPosture_s));
+  fade(error::kSeen, 2 * kLandmarks, std::exp(-seconds / kSeen_s));
+  return kept;
+}
+
+}  // namespace
+
+ErrorFilter::ErrorFilter()
+    : covariance_(kErrors, kErrors),
+      noise_(kNumbers),
+      residual_(kNumbers),
+      expected_(kNumbers, kNumbers),
+      slopes_(kErrors, kNumbers),
+      spread_(kErrors, kNumbers),
+      whitened_(kNumbers, kErrors),
+      root_(kNumbers) {
+  begin();
+}
+
+void ErrorFilter::begin() {
+  errors_.fill(0);
+  covariance_.setZero();
+  sigma_px_.fill(kFirstSigma_px);
+  for_priors([this](const ErrorPrior& prior) { set_variance(prior); });
+  for (int finger = 0; finger < kFingers; ++finger) add_bends(finger, 1);
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    set_variance(seen_prior(landmark, sigma_px_[landmark]));
+}
+
+void ErrorFilter::set_variance(const ErrorPrior& prior) {
+  covariance_.diagonal().segment(index(prior.first), prior.count).setConstant(square(prior.sd));
+}
+
+/// Adds a share of the prior covariance of a finger's bends.
+void ErrorFilter::add_bends(int finger, double share) {
+  const auto first = index(error::bend_of(finger, 0));
+  auto block = covariance_.block<kBendsOfFinger, kBendsOfFinger>(first, first);
+  block.array() += share * square(kSharedBend_rad);
+  block.diagonal().array() += share * square(kOwnBend_rad);
+}
+
+void ErrorFilter::pass(double seconds, const Flexions& flexions) {
+  auto kept = kept_after(seconds);
+  const auto share = as_vector(kept).array();
+  as_vector(errors_).array() *= share;
+  covariance_.array().colwise() *= share;
+  covariance_.array().rowwise() *= share.transpose();
+
+  const auto add = [&](const ErrorPrior& prior) {
+    covariance_.diagonal().segment(index(prior.first), prior.count).array() += prior.added(seconds);
+  };
+  for_priors(add);
+  const double renewed = 1 - std::exp(-2 * seconds / kPosture_s);
+  for (int finger = 0; finger < kFingers; ++finger)
+    add_bends(finger, renewed * square(1 + (kFoldedBend - 1) * folded(flexions[finger])));
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    add(seen_prior(landmark, sigma_px_[landmark]));
+}
+
+void ErrorFilter::forget_place() {
+  constexpr auto kForgotten = index(error::kPlace);
+  std::fill_n(errors_.begin(), kForgotten, 0);
+  covariance_.topRows(kForgotten).setZero();
+  covariance_.leftCols(kForgotten).setZero();
+  for_priors([&](const ErrorPrior& prior) {
+    if (index(prior.first) < kForgotten) set_variance(prior);
+  });
+  set_variance({error::kShift, 3, kJump_m, kLasting_s});
+  for (int finger = 0; finger < kFingers; ++finger) add_bends(finger, 1);
+}
+
+void ErrorFilter::set_noise(const msg::HandLandmarks& seen) {
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const auto& point = seen.points[landmark];
+    sigma_px_[landmark] = point.sigma_px > 0 ? point.sigma_px : kUnknownSigma_px;
+    const double noise_px = std::hypot(kWhiteShare * sigma_px_[landmark], kLeastNoise_px);
+    noise_.segment<2>(2 * landmark).setConstant(square(was_seen(point) ? noise_px : kNotSeen_px));
+  }
+}
+
+/// Sets how far the landmarks are from where the errors put them, and the derivatives.
+void ErrorFilter::linearise(const calib::CameraModel& camera, const HandJoints& reported,
+                            const msg::HandLandmarks& seen) {
+  const ArticulatedHand hand(reported, errors_);
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const auto joint = joint_of_landmark(landmark);
+    const glm::dvec3 beside =
+        (1 - own_share(landmark)) * vector_at(errors_, error::place_of(landmark));
+    const glm::dvec3 at_m = hand.joints().at_m[joint] + hand.joints().axes[joint] * beside;
+    add_slopes(landmark, camera.jacobian_px_per_m(hand.rigid_m(joint)), hand);
+    const auto error = error::seen_of(landmark);
+    const auto at_px = camera.project(at_m) + glm::dvec2(errors_[error], errors_[error + 1]);
+    const auto off_px = was_seen(seen.points[landmark])
+                            ? glm::dvec2(position_px(seen.points[landmark])) - at_px
+                            : glm::dvec2(0);
+    residual_.segment<2>(2 * landmark) << off_px.x, off_px.y;
+  }
+}
+
+/// Sets the derivatives of a landmark, and the covariance times them. Most are 0.
+void ErrorFilter::add_slopes(int landmark, const glm::dmat3x2& px_per_m,
+                             const ArticulatedHand& hand) {
+  auto slope = slopes_.middleCols<2>(2 * landmark), product = spread_.middleCols<2>(2 * landmark);
+  slope.setZero();
+  product.setZero();
+  const auto add = [&](std::size_t error, const glm::dvec2& px) {
+    for (int axis = 0; axis < 2; ++axis) {
+      slope(index(error), axis) += px[axis];
+      product.col(axis) += px[axis] * covariance_.col(index(error));
+    }
+  };
+  const auto add_vector = [&](std::size_t first, const glm::dmat3& way) {
+    const glm::dmat3x2 px = px_per_m * way;
+    for (int i = 0; i < 3; ++i) add(first + static_cast<std::size_t>(i), px[i]);
+  };
+  const auto add_number = [&](std::size_t error, const glm::dvec3& way) {
+    add(error, px_per_m * way);
+  };
+  hand.derivatives(landmark, add_vector, add_number);
+  add(error::seen_of(landmark), {1, 0});
+  add(error::seen_of(landmark) + 1, {0, 1});
+}
+
+/// Landmarks that are further off than is likely get more noise.
+void ErrorFilter::weaken_outliers() {
+  const double mean_variance = expected_.trace() / kNumbers;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const int at = 2 * landmark;
+    const double likely = expected_(at, at) + expected_(at + 1, at + 1);
+    const double off = std::sqrt(2 * residual_.segment<2>(at).squaredNorm() / likely);
+    if (!(off > kHuber)) continue;
+    const double more = mean_variance * (square(off / kHuber) - 1);
+    noise_.segment<2>(at).array() += more;
+    expected_.diagonal().segment<2>(at).array() += more;
+  }
+}
+
+void ErrorFilter::update(const calib::CameraModel& camera, const HandJoints& reported,
+                         const msg::HandLandmarks& seen) {
+  set_noise(seen);
+  linearise(camera, reported, seen);
+  expected_.noalias() = slopes_.transpose() * spread_;
+  expected_.diagonal() += noise_;
+  weaken_outliers();
+  root_.compute(expected_);
+  root_.solveInPlace(residual_);
+  auto state = as_vector(errors_);
+  state.noalias() += spread_ * residual_;
+  reduce_covariance();
+  if (!state.allFinite() || !covariance_.diagonal().allFinite()) begin();
+}
+
+/// By what the landmarks have told.
+void ErrorFilter::reduce_covariance() {
+  whitened_ = spread_.transpose();
+  root_.matrixL().solveInPlace(whitened_);
+  covariance_.selfadjointView<Eigen::Lower>().rankUpdate(whitened_.transpose(), -1);
+  covariance_.triangularView<Eigen::StrictlyUpper>() = covariance_.transpose();
+}
+
+HandErrors ErrorFilter::errors_after(double seconds) const {
+  auto errors = kept_after(seconds);
+  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] *= errors_[i];
+  return errors;
+}
+
+}  // namespace handcast::renderer

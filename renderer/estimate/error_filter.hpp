@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Cholesky>
+#include <array>
+
+#include "calib/calibration.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "renderer/estimate/articulated_hand.hpp"
+#include "renderer/estimate/error_priors.hpp"
+#include "renderer/estimate/hand_errors.hpp"
+
+namespace handcast::renderer {
+
+/// The estimate of all errors: an extended Kalman filter (Jazwinski 1970, section 8.3) whose
+/// outliers count less (Huber 1964). See `docs/method.md#estimate`. All memory is allocated
+/// at the start. One thread.
+class ErrorFilter {
+ public:
+  /// All errors are 0, with the variances of their priors.
+  ErrorFilter();
+
+  /// Lets time pass: what is known of errors that change becomes less certain. `flexions`: those of
+  /// the tracker's fingers; folded ones hide their errors.
+  void pass(double seconds, const Flexions& flexions);
+  /// Forgets where the tracker puts the hand and how it bends the fingers, not the person's joints.
+  void forget_place();
+  /// Adds the landmarks of an image (undistorted px) and the tracker's hand at the same time.
+  void update(const calib::CameraModel& camera, const HandJoints& reported,
+              const msg::HandLandmarks& seen);
+
+  /// The errors that are expected after a time in which nothing is seen.
+  HandErrors errors_after(double seconds) const;
+
+ private:
+  using Vector = Eigen::VectorXd;
+  using Matrix = Eigen::MatrixXd;
+
+  void begin();
+  void set_variance(const ErrorPrior& prior);
+  void add_bends(int finger, double share);
+  void set_noise(const msg::HandLandmarks& seen);
+  void linearise(const calib::CameraModel& camera, const HandJoints& reported,
+                 const msg::HandLandmarks& seen);
+  void add_slopes(int landmark, const glm::dmat3x2& px_per_m, const ArticulatedHand& hand);
+  void weaken_outliers();
+  void reduce_covariance();
+
+  HandErrors errors_{};
+  Matrix covariance_;
+  std::array<double, kLandmarks> sigma_px_;  ///< of the newest landmarks
+
+  /// Work of an update, by number of a detection: its noise, its distance from what is expected,
+  /// the covariance of that, its derivatives, and the covariance of the errors times them.
+  /// @{
+  Vector noise_, residual_;
+  Matrix expected_, slopes_, spread_, whitened_;
+  Eigen::LLT<Matrix> root_;
+  /// @}
+};
+
+}  // namespace handcast::renderer

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "renderer/estimate/articulated_hand.hpp"
+#include "renderer/estimate/hand_errors.hpp"
+
+/// @file
+/// How large errors are and how long they last: all constants of the estimate. They are those of a
+/// careful installation (docs/method.md#twin); a factor of 1.5 in any of them changes the error of
+/// the light by less than 5 %.
+namespace handcast::renderer {
+
+inline constexpr double kDegree = std::numbers::pi / 180;
+
+/// Numbers of one kind: their standard deviation, and the time constant with which they change, as
+/// an Ornstein-Uhlenbeck process.
+struct ErrorPrior {
+  std::size_t first;
+  int count;
+  double sd, lasts_s;
+
+  /// The share of a value that is left after a time.
+  double kept(double seconds) const { return std::exp(-seconds / lasts_s); }
+  /// The variance that a time adds to what is left.
+  double added(double seconds) const {
+    const double share = kept(seconds);
+    return sd * sd * (1 - share * share);
+  }
+};
+
+/// How long errors of an installation or a person, of a posture, and of a moment last.
+inline constexpr double kLasting_s = 60, kPosture_s = 0.7, kDrift_s = 0.3, kSeen_s = 0.35;
+
+/// Where the tracker's calibration and its idea of the hand's size put the hand, and the fingers.
+inline constexpr std::array kErrorPriors{
+    ErrorPrior{error::kShift, 2, 10e-3, kLasting_s},
+    ErrorPrior{error::kShift + 2, 1, 2.5e-3, kLasting_s},
+    ErrorPrior{error::kTurn, 3, 1.5 * kDegree, kLasting_s},
+    ErrorPrior{error::kSize, 1, 0.03, kLasting_s},
+    ErrorPrior{error::kMissing, kFingers, 0.1, kLasting_s},
+    ErrorPrior{error::kSpread, kFingers, 2 * kDegree, kPosture_s},
+};
+/// How far a tracker that has jumped may put the hand beside its place.
+inline constexpr double kJump_m = 0.05;
+/// Of a bend: what the joints of a finger share, and each its own.
+inline constexpr double kSharedBend_rad = 12 * kDegree, kOwnBend_rad = 6 * kDegree;
+/// Trackers guess folded fingers: their bends are so much less certain.
+inline constexpr double kFoldedBend = 1.5;
+/// Across the camera's axis, and along it.
+inline constexpr double kDriftAcross_m = 1.7e-3, kDriftAlong_m = 0.7e-3;
+
+/// Of a detector's sigma, this share is noise of one image; the rest lasts kSeen_s. Never less than
+/// the least noise, which the pixels cause.
+inline constexpr double kWhiteShare = 0.35, kLeastNoise_px = 0.6;
+/// Of a detector that reports no sigma.
+inline constexpr double kUnknownSigma_px = 5;
+/// A landmark that is further off than so many standard deviations counts less.
+inline constexpr double kHuber = 3;
+
+/// Calls `visit` with the priors of all errors but bends and those of the detector.
+template <class Visit>
+void for_priors(const Visit& visit) {
+  for (const auto& prior : kErrorPriors) visit(prior);
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    visit(ErrorPrior{error::place_of(landmark), 3, std::hypot(kOwnPlace_m, seen_place_m(landmark)),
+                     kLasting_s});
+  for (int part = -1; part < kFingers; ++part) {
+    visit(ErrorPrior{error::drift_of(part), 2, kDriftAcross_m, kDrift_s});
+    visit(ErrorPrior{error::drift_of(part) + 2, 1, kDriftAlong_m, kDrift_s});
+  }
+}
+
+/// The prior of a landmark's error, px.
+inline ErrorPrior seen_prior(int landmark, double sigma_px) {
+  return {error::seen_of(landmark), 2, sigma_px, kSeen_s};
+}
+
+/// 0 for a finger that is open, 1 for one that is folded.
+inline double folded(const std::array<double, kBendsOfFinger>& flexions_rad) {
+  constexpr double kOpen_rad = 1.2, kFolded_rad = 2.4;
+  const double sum_rad = flexions_rad[0] + flexions_rad[1] + flexions_rad[2];
+  return std::clamp((sum_rad - kOpen_rad) / (kFolded_rad - kOpen_rad), 0.0, 1.0);
+}
+
+}  // namespace handcast::renderer

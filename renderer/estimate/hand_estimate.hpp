@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "calib/calibration.hpp"
+#include "ipc/msg/hand_poses.hpp"
+#include "ipc/msg/landmarks.hpp"
+#include "renderer/estimate/hand_errors.hpp"
+#include "renderer/predict/hand_track.hpp"
+
+namespace handcast::renderer {
+
+class ErrorFilter;
+
+/// Step "estimate" and its state: the most likely hand, given the samples of the tracker and the
+/// landmarks of the images. What is wrong with the tracker's hand is estimated, because it changes
+/// slowly while the hand moves fast. See `docs/method.md#estimate`. One thread.
+class HandEstimate {
+ public:
+  /// Nothing is known yet. Copies the calibration.
+  explicit HandEstimate(const calib::Calibration& calibration);
+  ~HandEstimate();
+  HandEstimate(HandEstimate&&) noexcept;
+  HandEstimate& operator=(HandEstimate&&) noexcept;
+
+  /// Adds the landmarks of an image. They wait for a sample of the tracker that is not older:
+  /// it shows where the tracker saw the hand at the exposure. Those that come within 9 ms of others
+  /// are not used.
+  void detection(std::int64_t origin_ns, const msg::HandLandmarks& seen);
+  /// Uses the landmarks that wait, once `track` has that sample. After a jump of the tracker they
+  /// are dropped.
+  void look_back(const HandTrack& track);
+
+  /// The tracker has jumped: where it puts the hand from now on is not known until landmarks show
+  /// it. What is known of the person stays.
+  void tracker_jumped();
+
+  /// True once landmarks were used.
+  bool knows() const;
+  /// The tracker's hand at a time without its errors. What is known only for a moment fades after
+  /// the newest landmarks.
+  msg::HandPose corrected(std::int64_t time_ns, const msg::HandPose& reported) const;
+  /// The errors at a time.
+  HandErrors errors_at(std::int64_t time_ns) const;
+
+ private:
+  struct Waiting {
+    std::int64_t origin_ns;
+    msg::HandLandmarks seen;
+  };
+
+  calib::Calibration calibration_;
+  std::unique_ptr<ErrorFilter> filter_;
+  std::int64_t last_ns_ = 0;  ///< exposure of the newest landmarks that were used; 0: none
+  std::optional<Waiting> waiting_;
+};
+
+}  // namespace handcast::renderer

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "renderer/estimate/hand_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <random>
+
+#include "renderer/base/joint_math.hpp"
+#include "renderer/predict/projected_pose.hpp"
+#include "tests/renderer/hand_pose.hpp"
+#include "tests/renderer/poses.hpp"
+
+/// @file
+/// A hand 0.6 m from the camera that opens and closes. Its tracker reports it 100 times a second,
+/// wrongly; its landmarks are exact unless a test says otherwise.
+
+namespace handcast::renderer {
+namespace {
+
+constexpr std::int64_t kStep_ns = 10'000'000;
+constexpr float kSigma_px = 2, kLasting_s = 0.35f;  ///< of a landmark; how long its error lasts
+
+glm::vec3 at(const msg::HandPose& pose, int landmark) {
+  return position(pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[landmark])]);
+}
+
+/// Mean distance of the landmarks' joints, mm.
+float apart_mm(const msg::HandPose& a, const msg::HandPose& b) {
+  float sum = 0;
+  for (int i = 0; i < kLandmarks; ++i) sum += glm::distance(at(a, i), at(b, i));
+  return 1e3f * sum / kLandmarks;
+}
+
+class Estimate : public ::testing::Test {
+ protected:
+  /// The hand at a time: the fingers fold and unfold in a second.
+  msg::HandPose truth(std::int64_t time_ns, glm::mat4 wrong = glm::mat4(1), float bent = 1) const {
+    const auto fold = static_cast<float>(0.5 - 0.5 * std::cos(6.28e-9 * double(time_ns)));
+    samples::Pose pose = samples::kPinch;
+    for (auto& finger : pose.fingers)
+      for (int i = 1; i < 4; ++i) finger[i] *= bent * (0.4f + 0.6f * fold);
+    auto joints = samples::posed(mesh_, pose);
+    for (auto& joint : joints) joint = glm::translate(glm::mat4(1), {0, 0.05f, 0}) * wrong * joint;
+    return pose_of(Side::left, joints);
+  }
+  msg::HandLandmarks seen(const msg::HandPose& pose, float noise_px = 0) {
+    const auto px = project_landmarks(calibration_, pose).value();
+    std::normal_distribution<float> normal;
+    const float kept = std::exp(-1e-9f * float(kStep_ns) / kLasting_s),
+                renewed = std::sqrt(1 - kept * kept);
+    msg::HandLandmarks seen;
+    for (int i = 0; i < kLandmarks; ++i) {
+      noise_[i] = kept * noise_[i] + renewed * glm::vec2(normal(random_), normal(random_));
+      const glm::vec2 at = px[i] + noise_px * noise_[i];
+      seen.points[i] = {at.x, at.y, 1, kSigma_px};
+    }
+    return seen;
+  }
+  void report(const msg::HandPose& pose) { track_.push(time_ns_, time_ns_, pose); }
+  /// Seconds of a tracker that reports the hand turned or shifted, its fingers less or more bent.
+  void follow(double seconds, const glm::mat4& wrong, float bent = 1, float noise_px = 0) {
+    for (const auto end_ns = time_ns_ + std::int64_t(1e9 * seconds); time_ns_ < end_ns;
+         time_ns_ += kStep_ns) {
+      report(truth(time_ns_, wrong, bent));
+      estimate_.detection(time_ns_, seen(truth(time_ns_), noise_px));
+      estimate_.look_back(track_);
+    }
+    time_ns_ -= kStep_ns;
+  }
+  msg::HandPose corrected(const msg::HandPose& pose) const {
+    return estimate_.corrected(time_ns_, pose);
+  }
+
+  std::mt19937 random_{5};
+  LandmarkPoints noise_{};  ///< in standard deviations
+  const HandMesh mesh_ = *load_hand_or_default({}, Side::left);
+  const calib::Calibration calibration_ = [] {
+    calib::Calibration calibration;
+    calibration.camera_from_tracker =
+        glm::dmat4({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, 0.05, 0.6, 1});
+    return calibration;
+  }();
+  std::int64_t time_ns_ = 10'000'000'000;
+  HandTrack track_{config::Predict{}, calibration_};
+  HandEstimate estimate_{calibration_};
+};
+
+TEST_F(Estimate, KnowsNothingAtFirst) {
+  EXPECT_FALSE(estimate_.knows());
+  const auto pose = truth(time_ns_);
+  EXPECT_LT(apart_mm(estimate_.corrected(time_ns_, pose), pose), 1e-3f);
+}
+
+TEST_F(Estimate, AShiftOfTheTrackerIsFound) {
+  const auto wrong = glm::translate(glm::mat4(1), {0.012f, 0, 0.008f});
+  follow(2, wrong);
+  const auto reported = truth(time_ns_, wrong);
+  EXPECT_LT(apart_mm(corrected(reported), truth(time_ns_)),
+            0.2f * apart_mm(reported, truth(time_ns_)));
+}
+
+TEST_F(Estimate, ATurnOfTheTrackerIsFound) {
+  const auto wrong = glm::rotate(glm::mat4(1), 0.05f, {0, 1, 0});  // in the image
+  follow(2, wrong);
+  const auto reported = truth(time_ns_, wrong);
+  EXPECT_LT(apart_mm(corrected(reported), truth(time_ns_)),
+            0.3f * apart_mm(reported, truth(time_ns_)));
+}
+
+TEST_F(Estimate, FingersAreBentAsTheLandmarksShow) {
+  follow(2, glm::mat4(1), 0.7f);
+  const auto reported = truth(time_ns_, glm::mat4(1), 0.7f);
+  EXPECT_LT(apart_mm(corrected(reported), truth(time_ns_)),
+            0.5f * apart_mm(reported, truth(time_ns_)));
+}
+
+// Derivatives that share the noise of the landmarks let the hand grow by 10 mm in 6 s.
+TEST_F(Estimate, NoiseOfLandmarksDoesNotAddUp) {
+  follow(2, glm::mat4(1), 1, kSigma_px);
+  EXPECT_LT(apart_mm(corrected(truth(time_ns_)), truth(time_ns_)), 3);
+  follow(30, glm::mat4(1), 1, kSigma_px);
+  EXPECT_LT(apart_mm(corrected(truth(time_ns_)), truth(time_ns_)), 3);
+  EXPECT_LT(std::abs(estimate_.errors_at(time_ns_)[error::kSize]), 0.02);
+}
+
+TEST_F(Estimate, AWrongLandmarkMovesTheHandLittle) {
+  follow(1, glm::mat4(1));
+  for (int i = 0; i < 20; ++i) {
+    time_ns_ += kStep_ns;
+    report(truth(time_ns_));
+    auto wrong = seen(truth(time_ns_));
+    wrong.points[8].x_px += 80;
+    estimate_.detection(time_ns_, wrong);
+    estimate_.look_back(track_);
+  }
+  const auto hand = corrected(truth(time_ns_)), right = truth(time_ns_);
+  for (const int landmark : {0, 5, 9, 12, 16, 20})
+    EXPECT_LT(1e3f * glm::distance(at(hand, landmark), at(right, landmark)), 3) << landmark;
+  EXPECT_LT(1e3f * glm::distance(at(hand, 8), at(right, 8)), 12);  // 80 px are 41 mm
+}
+
+TEST_F(Estimate, LandmarksThatWereNotSeenDoNotCount) {
+  follow(1, glm::mat4(1));
+  const auto step = [this](bool is_seen) {
+    time_ns_ += kStep_ns;
+    report(truth(time_ns_, glm::mat4(1), 0.7f));
+    auto partly = seen(truth(time_ns_));
+    if (!is_seen)
+      for (int i = 5; i < kLandmarks; ++i)
+        partly.points[i] = {-1000, std::numeric_limits<float>::quiet_NaN(), 0, 0};
+    estimate_.detection(time_ns_, partly);
+    estimate_.look_back(track_);
+  };
+  const auto off_mm = [this] {
+    return apart_mm(corrected(truth(time_ns_, glm::mat4(1), 0.7f)), truth(time_ns_));
+  };
+  for (int i = 0; i < 100; ++i) step(false);
+  const float before_mm = off_mm();
+  step(true);
+  EXPECT_LT(off_mm(), 0.5f * before_mm);
+}
+
+TEST_F(Estimate, LandmarksWaitForTheTrackersNextSample) {
+  report(truth(time_ns_));
+  estimate_.detection(time_ns_ + kStep_ns / 2, seen(truth(time_ns_ + kStep_ns / 2)));
+  estimate_.look_back(track_);
+  EXPECT_FALSE(estimate_.knows());
+  time_ns_ += kStep_ns;
+  report(truth(time_ns_));
+  estimate_.look_back(track_);
+  EXPECT_TRUE(estimate_.knows());
+}
+
+TEST_F(Estimate, LandmarksOfBeforeAJumpOfTheTrackerAreNotUsed) {
+  report(truth(time_ns_));
+  estimate_.detection(time_ns_ + kStep_ns / 2, seen(truth(time_ns_)));
+  time_ns_ += 500'000'000;
+  report(truth(time_ns_));
+  estimate_.look_back(track_);
+  EXPECT_FALSE(estimate_.knows());
+}
+
+TEST_F(Estimate, AfterAJumpOfTheTrackerItsPlaceIsLearnedAnew) {
+  follow(2, glm::translate(glm::mat4(1), {0.012f, 0, 0.008f}));
+  estimate_.tracker_jumped();
+  EXPECT_FALSE(estimate_.knows());
+  const auto elsewhere = glm::translate(glm::mat4(1), {-0.05f, 0, 0.02f});
+  time_ns_ += 500'000'000;  // or the track, too, would take it for a jump
+  follow(0.1, elsewhere);
+  const auto reported = truth(time_ns_, elsewhere);
+  EXPECT_LT(apart_mm(corrected(reported), truth(time_ns_)), 4);
+}
+
+TEST_F(Estimate, WhatIsNotSeenAnyMoreFadesAndWhatLastsStays) {
+  const auto shifted = glm::translate(glm::mat4(1), {0.012f, 0, 0});
+  follow(2, shifted, 0.7f);
+  const auto reported = truth(time_ns_, shifted, 0.7f);
+  const auto bend_of = [](const msg::HandPose& pose) {
+    return angle_between(orientation(pose.joints[7]), orientation(pose.joints[9]));
+  };
+  const auto later = estimate_.corrected(time_ns_ + 10'000'000'000, reported);
+  EXPECT_NEAR(bend_of(later), bend_of(reported), 0.15);
+  EXPECT_LT(glm::distance(at(later, 0), at(truth(time_ns_), 0)), 0.005f);
+}
+
+TEST_F(Estimate, ItStaysFiniteWhateverIsSeen) {
+  follow(0.2, glm::mat4(1));
+  std::uniform_real_distribution<float> anywhere(-9e4f, 9e4f);
+  for (int i = 0; i < 200; ++i) {
+    time_ns_ += kStep_ns;
+    report(truth(time_ns_));
+    auto wild = seen(truth(time_ns_));
+    for (auto& point : wild.points)
+      point = {anywhere(random_), anywhere(random_), 1, std::abs(anywhere(random_))};
+    estimate_.detection(time_ns_, wild);
+    estimate_.look_back(track_);
+    for (const double value : estimate_.errors_at(time_ns_)) ASSERT_TRUE(std::isfinite(value)) << i;
+  }
+  follow(3, glm::mat4(1));
+  EXPECT_LT(apart_mm(corrected(truth(time_ns_)), truth(time_ns_)), 4);
+}
+
+}  // namespace
+}  // namespace handcast::renderer
