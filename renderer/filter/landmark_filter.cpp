@@ -67,6 +67,7 @@ bool moves_with_tracker(const config::Filter& settings) {
     case FilterMethod::paper:
     case FilterMethod::one_euro:
     case FilterMethod::offset_kalman:
+    case FilterMethod::articulated:
       return true;
     default:
       return false;
@@ -87,6 +88,7 @@ std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& setti
     case FilterMethod::one_euro:
       return make_settled_filter(settings, make_one_euro_filter(settings));
     case FilterMethod::offset_kalman:
+    case FilterMethod::articulated:  // as long as there is no tracker whose errors can be known
       return make_settled_filter(settings, make_offset_kalman(settings));
     case FilterMethod::ideal:
       if (oracle) return std::make_unique<IdealFilter>(std::move(oracle));

@@ -51,7 +51,8 @@ class LandmarkFilter {
                                            const LandmarkPoints& tracker) = 0;
 };
 
-/// True if Q̂ is P plus an offset (methods paper, one_euro, offset_kalman). Such a Q̂ shares the
+/// True if Q̂ is P plus an offset (methods paper, one_euro, offset_kalman,
+/// articulated). Such a Q̂ shares the
 /// error of P's prediction, which late registration corrects. The Q̂ of naive, kalman and ideal does
 /// not depend on P; none has no Q̂.
 bool moves_with_tracker(const config::Filter& settings);

@@ -10,7 +10,6 @@
 #include "renderer/content/textures.hpp"
 #include "renderer/correct/deform.hpp"
 #include "renderer/predict/plausible_pose.hpp"
-#include "renderer/skin/finger_bend.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -21,6 +20,15 @@ config::Filter filter_of(const config::Cascade& settings) {
   config::Filter filter = settings.filter;
   if (registration_of(settings).method != config::RegisterMethod::none) filter.blend_ms = 0;
   return filter;
+}
+
+/// The median over the landmarks of the distance between two places, px.
+float median_distance(const LandmarkPoints& a, const LandmarkPoints& b) {
+  std::array<float, kLandmarks> apart_px;
+  for (int i = 0; i < kLandmarks; ++i) apart_px[i] = glm::distance(a[i], b[i]);
+  const auto middle = apart_px.begin() + kLandmarks / 2;
+  std::nth_element(apart_px.begin(), middle, apart_px.end());
+  return *middle;
 }
 
 /// What is painted until the content service says more: the content itself if it is one picture, or
@@ -47,11 +55,10 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
     : side_(side),
       settings_(settings),
       calibration_(calibration),
-      states_{.reports = {.snaps = FingerSnaps(calibration),
-                          .orientation_bias = OrientationBias(calibration),
-                          .landmark_offset = LandmarkOffset(calibration)},
+      states_{.reports = {.snaps = FingerSnaps(calibration)},
               .motion = {.track = HandTrack(settings.predict, calibration),
                          .landmarks = LandmarkTrack(filter_of(settings), std::move(oracle)),
+                         .estimate = HandEstimate(calibration),
                          .ladder = HandLadder(settings)},
               .light = {},
               .shape = HandStates::Shape(std::move(surface))},
@@ -108,25 +115,25 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::
   const auto held = settings_.predict.method == config::PredictMethod::acceleration
                         ? reports.snaps.held(origin_ns, pose, motion.landmarks.moved_px())
                         : pose;
-  motion.landmarks.tracker_sample(now_ns, motion.track.push(now_ns, origin_ns, held));
+  const auto pushed = motion.track.push(now_ns, origin_ns, held);
+  motion.landmarks.tracker_sample(now_ns, pushed);
+  if (pushed == PoseHistory::Pushed::begins_anew) motion.estimate.tracker_jumped();
+  if (estimates()) motion.estimate.look_back(motion.track);
   shape.surface.learn(origin_ns, held);
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
                         const msg::HandLandmarks& seen) {
   auto& [reports, motion, light, shape] = states_;
-  const bool is_alone = motion.landmarks.is_alone();
-  if (const auto pose = motion.track.recent_pose(origin_ns); pose && !is_alone) {
-    if (settings_.skin.turn) reports.orientation_bias.learn(origin_ns, *pose, seen);
-    if (settings_.filter.definitions)
-      reports.landmark_offset.learn(origin_ns, reports.orientation_bias.turned(*pose), seen);
+  if (estimates()) {
+    motion.estimate.detection(origin_ns, seen);
+    motion.estimate.look_back(motion.track);
   }
   reports.has_sigmas =
       std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
-  const auto as_tracked = reports.landmark_offset.as_tracked(seen);
-  reports.snaps.detection(origin_ns, as_tracked);
-  if (!is_alone) motion.ladder.detection(motion.track, origin_ns, as_tracked);
-  motion.landmarks.detection(now_ns, origin_ns, as_tracked, motion.track);
+  reports.snaps.detection(origin_ns, seen);
+  if (!motion.landmarks.is_alone()) motion.ladder.detection(motion.track, origin_ns, seen);
+  motion.landmarks.detection(now_ns, origin_ns, seen, motion.track);
 }
 
 std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
@@ -145,9 +152,39 @@ std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t
     light.sight.no_hand(target_ns);
     return std::nullopt;
   }
-  frame.corrected = motion.ladder.take(motion.track, target_ns, image_ns, *predicted, filtered);
+  frame.estimated = estimated(target_ns, *predicted, filtered);
+  frame.corrected =
+      frame.estimated ? drawn_as(*frame.estimated, *predicted, filtered)
+                      : motion.ladder.take(motion.track, target_ns, image_ns, *predicted, filtered);
   frame.registered.landmarks = frame.corrected.landmarks;
   return frame;
+}
+
+/// The hand without the tracker's errors. Empty if they are not known, or if the landmarks
+/// contradict the tracker.
+std::optional<ProjectedPose> HandPipeline::estimated(std::int64_t target_ns,
+                                                     const Predicted& predicted,
+                                                     const Filtered& filtered) const {
+  const auto& estimate = states_.motion.estimate;
+  if (!estimates() || filtered.is_alone || !estimate.knows()) return std::nullopt;
+  auto hand = project(calibration_, estimate.corrected(target_ns, predicted.posed.pose));
+  constexpr float kContradicted_px = 20;
+  if (hand && filtered.has_landmarks &&
+      median_distance(hand->landmarks, filtered.landmarks) > kContradicted_px)
+    return std::nullopt;
+  return hand;
+}
+
+/// The landmarks of a hand that is drawn in another pose than the tracker's.
+Corrected HandPipeline::drawn_as(const ProjectedPose& hand, const Predicted& predicted,
+                                 const Filtered& filtered) const {
+  const bool is_registered = settings_.ladder.rung != config::RungChoice::landmarks;
+  return {.posed = predicted.posed,
+          .landmarks = hand.landmarks,
+          .has_landmarks = true,
+          .has_news = filtered.has_news,
+          .rung = is_registered ? Rung::registered : Rung::landmarks,
+          .registered = is_registered ? 1.f : 0.f};
 }
 
 HandMask::Sought HandPipeline::sought(const HandFrame& frame, std::int64_t image_ns) const {
@@ -194,20 +231,9 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
     states_.motion.ladder.registered(target_ns, frame.registered.moved_now);
 }
 
-/// The pose as the landmarks show that it is turned and bent, if the camera can see it so.
-ProjectedPose HandPipeline::posed(const HandFrame& frame) const {
-  const Corrected& corrected = frame.corrected;
-  const bool is_bent = settings_.skin.bend && corrected.has_landmarks;
-  if (!settings_.skin.turn && !is_bent) return corrected.posed;
-  msg::HandPose pose = corrected.posed.pose;
-  if (settings_.skin.turn) pose = states_.reports.orientation_bias.turned(pose);
-  if (is_bent) pose = bent(pose, frame.registered.landmarks, calibration_);
-  return project(calibration_, pose).value_or(corrected.posed);
-}
-
 void HandPipeline::skin(HandFrame& frame, float shading) {
   auto& shape = states_.shape;
-  frame.drawn = posed(frame);
+  frame.drawn = frame.estimated.value_or(frame.corrected.posed);
   frame.from_px = to_projector(frame.drawn.landmarks, frame.drawn);
   frame.to_px = shape.fingers.moved(to_projector(frame.registered.landmarks, frame.drawn));
   frame.skinned =

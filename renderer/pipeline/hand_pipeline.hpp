@@ -13,7 +13,7 @@
 #include "renderer/correct/palm_outline.hpp"
 #include "renderer/correct/rung_mover.hpp"
 #include "renderer/draw/painter.hpp"
-#include "renderer/filter/landmark_offset.hpp"
+#include "renderer/estimate/hand_estimate.hpp"
 #include "renderer/filter/landmark_track.hpp"
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
@@ -23,7 +23,6 @@
 #include "renderer/predict/presence.hpp"
 #include "renderer/register/late_registration.hpp"
 #include "renderer/skin/hand_surface.hpp"
-#include "renderer/skin/orientation_bias.hpp"
 
 namespace handcast::renderer {
 
@@ -33,10 +32,11 @@ config::Registration registration_of(const config::Cascade& settings);
 
 /// One hand in one frame: the value that each step made.
 struct HandFrame {
-  Corrected corrected;        ///< predict, filter and ladder
-  float presence = 1;         ///< share of its light, 0..1
-  RegisteredHand registered;  ///< register
-  ProjectedPose drawn;        ///< skin: the pose that was skinned
+  Corrected corrected;                     ///< predict, filter and ladder
+  std::optional<ProjectedPose> estimated;  ///< estimate: the hand without the tracker's errors
+  float presence = 1;                      ///< share of its light, 0..1
+  RegisteredHand registered;               ///< register
+  ProjectedPose drawn;                     ///< skin: the pose that was skinned
   /// Skin: the landmarks before and after the correction, P of `drawn` and Q̂, projector px.
   /// @{
   LandmarkPoints from_px{}, to_px{};
@@ -48,15 +48,14 @@ struct HandFrame {
 struct HandStates {
   /// How the reports of the sensors differ from the hand.
   struct Reports {
-    FingerSnaps snaps;                 ///< of the tracker: fingers that it has lost
-    OrientationBias orientation_bias;  ///< of the tracker: how it turns the hand
-    LandmarkOffset landmark_offset;    ///< of the detector: where it sees the tracker's joints
-    bool has_sigmas = false;           ///< the detector says how wrong its landmarks may be
+    FingerSnaps snaps;        ///< of the tracker: fingers that it has lost
+    bool has_sigmas = false;  ///< the detector says how wrong its landmarks may be
   } reports;
   /// Where the hand is: the states of predict, filter and ladder.
   struct Motion {
     HandTrack track;
     LandmarkTrack landmarks;
+    HandEstimate estimate;
     HandLadder ladder;
   } motion;
   /// How much light it gets.
@@ -169,7 +168,16 @@ class HandPipeline {
   HandPipeline(Side side, const config::Cascade& settings, const calib::Calibration& calibration,
                HandSurface surface, MipChain picture, LandmarkOracle oracle);
 
-  ProjectedPose posed(const HandFrame& frame) const;
+  /// True if the hand is drawn as the estimate says, on the rungs that have all landmarks.
+  bool estimates() const {
+    return settings_.filter.method == config::FilterMethod::articulated &&
+           (settings_.ladder.rung == config::RungChoice::automatic ||
+            held_rung(settings_.ladder.rung) >= Rung::landmarks);
+  }
+  std::optional<ProjectedPose> estimated(std::int64_t target_ns, const Predicted& predicted,
+                                         const Filtered& filtered) const;
+  Corrected drawn_as(const ProjectedPose& hand, const Predicted& predicted,
+                     const Filtered& filtered) const;
   LandmarkPoints to_projector(const LandmarkPoints& camera_px, const ProjectedPose& depths) const;
   LateRegistration::Hand late_hand(const HandFrame& frame) const;
 
