@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,11 @@ struct ShownInterval {
   double worst_error_ms = 0;  ///< the farthest from the refresh that a frame was drawn for
   bool is_left = false;       ///< Escape was pressed meanwhile
 };
+
+/// Whether pictures that were shown one after another, at these times, waited for the refreshes of
+/// a monitor: they came no faster, and at the same phase of a refresh. A slow computer without
+/// vsync is not faster, either, but has no phase.
+bool has_waited(std::span<const std::int64_t> shown_ns, std::int64_t refresh_ns);
 
 /// Keys that end what waits for them.
 inline constexpr std::string_view kEscape = "Escape", kGoOn = " ";
