@@ -99,13 +99,19 @@ renderer::Texture StudyScreen::page(const std::vector<std::string>& lines) const
 }
 
 Result<std::string> StudyScreen::ask(const std::vector<std::string>& lines,
-                                     const std::vector<std::string_view>& keys) {
+                                     const std::vector<std::string_view>& keys,
+                                     const TakeKeys& take_others) {
   const auto picture = page(lines);
-  window_->take_keys();  // those of before were no answer
+  const auto take = [&] {
+    auto taken = window_->take_keys();
+    if (take_others) std::ranges::move(take_others(), std::back_inserter(taken));
+    return taken;
+  };
+  take();  // those of before were no answer
   for (;;) {
     if (auto shown = show(picture.view(), {0, 0, width_px_, height_px_}); !shown)
       return tl::make_unexpected(shown.error());
-    for (const auto& key : window_->take_keys())
+    for (const auto& key : take())
       if (std::ranges::find(keys, key) != keys.end()) return key;
   }
 }
