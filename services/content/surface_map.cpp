@@ -76,7 +76,7 @@ std::shared_ptr<const SurfaceMap> surface_map_of(const renderer::HandMesh& hand,
     int width, height;
     std::shared_ptr<const SurfaceMap> map;
   };
-  constexpr std::size_t kKept = 4;  // two hands, while the size changes
+  constexpr std::size_t kKept = 4;  // two hands, whole and as large as what moves (HandView)
   static std::vector<Made> all;
   const auto found = std::ranges::find_if(all, [&](const Made& made) {
     return made.width == width && made.height == height && made.uv == hand.uv &&
