@@ -55,8 +55,8 @@ class DarkFrames {
 
 class RigWithAGame : public SystemTest {
  protected:
-  std::string shown() const {
-    return nlohmann::json::parse(handcast({"content", "--json"}).output)["left"]["content"];
+  std::string shown(const char* hand = "left") const {
+    return nlohmann::json::parse(handcast({"content", "--json"}).output)[hand]["content"];
   }
 };
 
@@ -84,6 +84,20 @@ TEST_F(RigWithAGame, AGameThatIsKilledLeavesNoDarkFrameAndOneThatEndsGivesTheHan
   EXPECT_EQ(game.wait(), 0);
   EXPECT_THAT(game.output(), HasSubstr("Best score"));
   EXPECT_TRUE(eventually([&] { return shown() == "builtin:checker"; })) << shown();
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+}
+
+TEST_F(RigWithAGame, AGameOnTwoHandsIsShownOnBothAndGivesBothBack) {
+  const auto rig = up({"--set", "content.left=builtin:white", "--set",
+                       "content.right=builtin:skeleton", "--set", "twin.motion=builtin:two_hands"});
+  wait_until_light();
+  Command game(scratch_.path(), {"study", "shooter", "--two-hands"});
+  for (const auto* hand : {"left", "right"})
+    EXPECT_TRUE(eventually([&] { return shown(hand) == "program:"; })) << hand << game.log();
+  game.signal(SIGTERM);
+  EXPECT_EQ(game.wait(), 0);
+  EXPECT_TRUE(eventually([&] { return shown("left") == "builtin:white"; })) << shown("left");
+  EXPECT_TRUE(eventually([&] { return shown("right") == "builtin:skeleton"; })) << shown("right");
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
 }
 

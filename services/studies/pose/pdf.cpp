@@ -34,7 +34,7 @@ std::string readable(const std::string& time) {
 double list_sessions(Canvas& page, std::span<const PoseSession> sessions, std::size_t first_number,
                      double y) {
   constexpr double kLine = 13;
-  const std::size_t lines = (sessions.size() + 1) / 2;
+  const std::size_t lines = std::max<std::size_t>(1, (sessions.size() + 1) / 2);
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     const auto& session = sessions[s];
     const double x = kMargin + (s < lines ? 0 : 0.53 * kTextWidth),
@@ -110,8 +110,9 @@ void draw_pose_page(Canvas& page, const std::string& person, std::span<const Pos
   constexpr double kColumn = kTextWidth / kColumns;
   const double row = (kPage_pt[1] - kMargin - y) / static_cast<double>(kRows);
   const auto box_of = [&](std::size_t cell) {
-    return Box{kMargin + 20 + kColumn * static_cast<double>(cell % kColumns),
-               y + row * static_cast<double>(cell / kColumns), kColumn - 34, row - 40};
+    const std::size_t line = cell / kColumns, column = cell % kColumns;
+    return Box{kMargin + 20 + kColumn * static_cast<double>(column),
+               y + row * static_cast<double>(line), kColumn - 34, row - 40};
   };
   // Two joints of the thumb, then three of each finger: a row for each.
   for (std::size_t joint = 0; joint < kFlexions; ++joint)
