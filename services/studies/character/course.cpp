@@ -74,7 +74,7 @@ std::string difficulties_of(const CharacterFindings& findings) {
 std::vector<CharacterSession> character_sessions(int subject, int tests) {
   const auto order = latin_order(static_cast<std::size_t>(subject - 1), 2);
   std::vector<CharacterSession> sessions;
-  sessions.reserve(static_cast<std::size_t>(kCharacterTraining + tests));
+  sessions.reserve(std::size_t{kCharacterTraining} + static_cast<std::size_t>(tests));
   for (int number = 0; number < kCharacterTraining + tests; ++number)
     sessions.push_back({.number = number,
                         .is_training = number < kCharacterTraining,
