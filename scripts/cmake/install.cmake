@@ -8,7 +8,7 @@ set(share ${HANDCAST_INSTALL_SHAREDIR})
 install(DIRECTORY config/rigs config/calibrations config/sweeps DESTINATION ${share})
 install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts)
 install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
-install(FILES scripts/handcast_content.py DESTINATION ${share}/python)
+install(FILES scripts/handcast.py DESTINATION ${share}/python)
 
 # The documents, in the folders that their links lead to.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE
