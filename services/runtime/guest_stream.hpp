@@ -18,8 +18,8 @@
 namespace handcast::service {
 
 /// What a program outside the rig sends, checked. The program may write anything at any rate, stop
-/// in the middle or die: at most 2000 messages a second are looked at, and a reader that noise has
-/// led astray is replaced within a second. One thread.
+/// in the middle or die: at most 2000 messages a second are looked at, and a reader whose words
+/// were overwritten is replaced. One thread.
 template <class T>
 class GuestStream {
  public:
@@ -36,41 +36,48 @@ class GuestStream {
   /// bad_data (one was left out; the sentence says why).
   Result<T> latest(Deadline deadline) {
     sleep_until_ns(std::min(deadline.time_ns(), next_ns_));
-    if (now_ns() < next_ns_) return silence();
+    const auto begin_ns = now_ns();
+    if (begin_ns < next_ns_) return silence();
     const auto sample = reader_->latest(deadline);
     const auto time_ns = now_ns();
-    const bool is_ruined = !sample && sample.error().code != Errc::timeout;
-    next_ns_ = is_ruined ? time_ns + kAfterNoise_ns : time_ns + kShortest_ns;
-    if (sample) {
-      heard_ns_ = time_ns;
-      return checked(**sample, time_ns);
-    }
-    if (is_ruined || time_ns - renewed_ns_ > kRenewAfter_ns) (void)renew();
-    return is_ruined ? left_out(sample.error().what) : silence();
+    const bool is_noise = !sample && sample.error().code != Errc::timeout;
+    next_ns_ = time_ns + (is_noise ? kAfterNoise_ns : kShortest_ns);
+    if (is_noise || (sample && was_not_woken(*sample, begin_ns, time_ns))) (void)renew();
+    if (is_noise) return left_out(sample.error().what);
+    return sample ? checked(**sample, time_ns) : silence();
   }
 
  private:
   static constexpr std::int64_t kShortest_ns = 500'000;  ///< between two messages
   static constexpr std::int64_t kAfterNoise_ns = 10'000'000;
-  static constexpr std::int64_t kRenewAfter_ns = 1'000'000'000;
+  static constexpr std::int64_t kLate_ns = 10'000'000;  ///< of a wake-up
 
   GuestStream(ipc::OpenRing ring, std::string stream, ipc::Wait wait)
       : ring_(std::move(ring)), stream_(std::move(stream)), wait_(wait) {}
 
+  /// Whether a message was found only because a reader looks again now and then: noise has
+  /// overwritten its wish to be woken.
+  bool was_not_woken(const ipc::Sample<T>& sample, std::int64_t begin_ns, std::int64_t time_ns) {
+    const bool has_skipped = std::exchange(skipped_, reader_->skipped()) != reader_->skipped();
+    const auto published_ns = sample->header.published_ns;
+    return begin_ns < time_ns - kLate_ns &&
+           (has_skipped || (published_ns > begin_ns && published_ns < time_ns - kLate_ns));
+  }
+
   /// Reads the ring anew, from the next message on. The reader before stays if that fails.
   Result<void> renew() {
-    renewed_ns_ = now_ns();
     auto segment = ring_(stream_);
     if (!segment) return tl::make_unexpected(segment.error());
     auto reader = ipc::Reader<T>::attach(std::move(*segment), wait_, ipc::Hold::copy);
     if (!reader) return tl::make_unexpected(reader.error());
     (void)reader->latest(Deadline::now());  // seen already, or left by a program that is gone
     reader_ = std::move(*reader);
+    skipped_ = reader_->skipped();
     return {};
   }
 
   Result<T> checked(const T& message, std::int64_t time_ns) {
-    renewed_ns_ = time_ns;
+    heard_ns_ = time_ns;
     if (auto time = msg::check_guest_time(message.header.origin_ns, last_ns_, time_ns); !time)
       return left_out(time.error().what);
     if (auto fits = msg::check_guest(message); !fits) return left_out(fits.error().what);
@@ -93,10 +100,10 @@ class GuestStream {
   std::string stream_;
   ipc::Wait wait_;
   std::optional<ipc::Reader<T>> reader_;
-  std::int64_t last_ns_ = 0;     ///< the origin of the last message that was passed on
-  std::int64_t heard_ns_ = 0;    ///< when the last message came; 0: none yet
-  std::int64_t renewed_ns_ = 0;  ///< when the reader was made, or was last seen to work
-  std::int64_t next_ns_ = 0;     ///< no message is looked at before
+  std::uint64_t skipped_ = 0;  ///< by this reader
+  std::int64_t last_ns_ = 0;   ///< the origin of the last message that was passed on
+  std::int64_t heard_ns_ = 0;  ///< when the last message came; 0: none yet
+  std::int64_t next_ns_ = 0;   ///< no message is looked at before
 };
 
 }  // namespace handcast::service

@@ -44,6 +44,8 @@ class GuestRing {
       std::memcpy(segment_.data() + i, &word, sizeof word);
     }
   }
+  /// Writes zeros over everything behind the header: numbers begin anew.
+  void wipe() { std::memset(segment_.data() + 4096, 0, segment_.size() - 4096); }
 
  private:
   Result<ipc::Segment> again() const { return ipc::Segment::open(UniqueFd(::dup(segment_.fd()))); }

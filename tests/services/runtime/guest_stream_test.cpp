@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <thread>
 
 #include "tests/services/guest_ring.hpp"
 
@@ -41,6 +42,14 @@ class GuestStreamTest : public testing::Test {
     auto poses = hand_at(now_ns());
     spoil(poses);
     return why_left_out(poses);
+  }
+
+  /// Whether a program that sends now and then is heard.
+  bool is_heard_in_time() {
+    const auto end_ns = now_ns() + to_ns(10s);
+    do ring_.send(hand_at(now_ns()));
+    while (!guests_.latest(Deadline::in(700ms)) && now_ns() < end_ns);
+    return now_ns() < end_ns;
   }
 
   test::GuestRing<HandPoses> ring_{"guest.pose"};
@@ -117,20 +126,32 @@ TEST_F(GuestStreamTest, AProgramThatStopsInTheMiddleIsSilent) {
   EXPECT_EQ(silence.error().code, Errc::timeout);
 }
 
-TEST_F(GuestStreamTest, AfterNoiseTheNextProgramIsHeardWithinASecond) {
+TEST_F(GuestStreamTest, AfterNoiseTheNextProgramIsHeard) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     ring_.write_noise(seed);
-    const auto taken = guests_.latest(Deadline::in(2ms));
-    ASSERT_FALSE(taken) << "noise is no hand";
+    EXPECT_FALSE(guests_.latest(Deadline::in(2ms))) << "noise is no hand";
   }
   ring_.begin();
-  const auto end_ns = now_ns() + to_ns(5s);
-  Result<HandPoses> taken = fail(Errc::timeout, "");
-  while (!taken && now_ns() < end_ns) {
-    ring_.send(hand_at(now_ns()));
-    taken = guests_.latest(Deadline::in(10ms));
+  EXPECT_TRUE(is_heard_in_time());
+}
+
+/// A reader whose row was overwritten is not woken: it looks every 100 ms.
+TEST_F(GuestStreamTest, AfterNoiseItIsWokenAgain) {
+  ring_.write_noise(1);
+  ring_.wipe();
+  ring_.begin();
+  EXPECT_TRUE(is_heard_in_time());
+  std::int64_t shortest_ns = to_ns(1h);
+  for (int i = 0; i < 10; ++i) {
+    const auto begin_ns = now_ns();
+    const std::jthread program([&] {
+      sleep_until_ns(begin_ns + to_ns(5ms));
+      ring_.send(hand_at(now_ns()));
+    });
+    EXPECT_TRUE(guests_.latest(Deadline::in(50ms)));
+    shortest_ns = std::min(shortest_ns, now_ns() - begin_ns);
   }
-  EXPECT_TRUE(taken) << taken.error().what;
+  EXPECT_LT(shortest_ns, to_ns(40ms));
 }
 
 TEST_F(GuestStreamTest, WithoutARigThereAreNoPrograms) {
