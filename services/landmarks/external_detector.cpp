@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "ipc/msg/guest_streams.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/runtime/guest_stream.hpp"
@@ -8,15 +10,20 @@ namespace {
 
 /// The landmarks of a program that is not part of the rig (ipc/client/handcast.h), in pixels of the
 /// image as the lens forms it. The program reads the images itself and decides which of them it
-/// searches.
+/// searches. The first image has no hand if no program sends yet, so that the rig need not wait for
+/// one.
 class ExternalDetector final : public Detector {
  public:
   ExternalDetector(service::GuestStream<msg::Landmarks> guests, const calib::CameraModel& lens)
       : guests_(std::move(guests)), lens_(lens) {}
 
-  Result<msg::Landmarks> detect(const msg::CameraFrame&, const Hints&, Deadline deadline) override {
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&,
+                                Deadline deadline) override {
     auto sent = guests_.latest(deadline);
-    if (!sent) return sent;
+    if (const bool is_first = std::exchange(is_first_, false); !sent) {
+      if (!is_first || sent.error().code != Errc::timeout) return sent;
+      return msg::Landmarks{.header = {frame.header.frame_id, frame.header.origin_ns, 0}};
+    }
     for (std::uint32_t hand = 0; hand < sent->count; ++hand)
       for (auto& point : sent->hands[hand].points) {
         const auto straight = lens_.undistort({point.x_px, point.y_px});
@@ -29,6 +36,7 @@ class ExternalDetector final : public Detector {
  private:
   service::GuestStream<msg::Landmarks> guests_;
   calib::CameraModel lens_;
+  bool is_first_ = true;
 };
 
 }  // namespace

@@ -7,16 +7,18 @@ namespace handcast::pose {
 namespace {
 
 /// The samples of a program that is not part of the rig (ipc/client/handcast.h). One that sends
-/// nothing is a tracker that is silent; the landmarks then carry the light alone.
+/// nothing is a tracker that is silent; the landmarks then carry the light alone. The first sample
+/// has no hand if no program sends yet, so that the rig need not wait for one.
 class ExternalPose final : public PoseSource {
  public:
   explicit ExternalPose(service::GuestStream<msg::HandPoses> guests) : guests_(std::move(guests)) {}
 
   Result<void> sample(msg::HandPoses& poses, Deadline deadline) override {
     const auto sent = guests_.latest(deadline);
-    if (!sent) return fail_in("pose 'external'", sent.error());
-    poses = *sent;
-    poses.header = {++number_, sent->header.origin_ns, 0};
+    if (!sent && (number_ > 0 || sent.error().code != Errc::timeout))
+      return fail_in("pose 'external'", sent.error());
+    poses = sent.value_or(msg::HandPoses{.header = {.origin_ns = now_ns()}});
+    poses.header = {++number_, poses.header.origin_ns, 0};
     poses.calibration = 0;
     return {};
   }

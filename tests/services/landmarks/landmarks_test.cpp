@@ -116,6 +116,10 @@ TEST(ExternalDetector, RemovesTheDistortionOfTheLensFromWhatAProgramSends) {
   calibration.camera.k1 = -0.3;
   const auto detector = open_detector(rig, calibration, now_ns(), {}, program.open());
   ASSERT_TRUE(detector) << detector.error().what;
+  const auto first = (*detector)->detect(frame_of(6, 5), {}, Deadline::in(1ms));
+  ASSERT_TRUE(first) << "the rig waits for a first result";
+  EXPECT_EQ(first->header.frame_id, 6u);
+  EXPECT_EQ(first->count, 0u);
   const auto silence = (*detector)->detect(frame_of(8, now_ns()), {}, Deadline::in(1ms));
   ASSERT_FALSE(silence);
   EXPECT_EQ(silence.error().code, Errc::timeout);

@@ -49,7 +49,11 @@ TEST(ExternalPose, PassesOnWhatAProgramSends) {
   const auto source = open_pose_source(rig, calib::reference_rig(), now_ns(), program.open());
   ASSERT_TRUE(source) << source.error().what;
   const auto twin = twin::Twin::create(rig, calib::reference_rig()).value();
-  std::uint64_t last = 0;
+  msg::HandPoses first;
+  ASSERT_TRUE((*source)->sample(first, Deadline::in(1ms))) << "the rig waits for a first sample";
+  EXPECT_EQ(first.count, 0u);
+  EXPECT_FALSE((*source)->sample(first, Deadline::in(1ms)));
+  std::uint64_t last = first.header.frame_id;
   for (std::uint64_t k = 0; k < 3; ++k) {
     auto sent = twin->tracker_sample(k).poses;
     sent.header = {99, now_ns(), 0};
