@@ -26,6 +26,7 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
+import time
 from typing import Iterator, Mapping, NamedTuple, Optional, Sequence
 
 try:
@@ -148,7 +149,7 @@ class _Handle:
 
 def now_ns() -> int:
     """The time now, CLOCK_MONOTONIC."""
-    return _load().handcast_now()
+    return time.monotonic_ns()
 
 
 class Camera:
@@ -289,6 +290,23 @@ def joints_of_points(points_m: Sequence, hand: str) -> "numpy.ndarray":
     x /= numpy.linalg.norm(x, axis=1, keepdims=True)
     axes = numpy.stack([x, numpy.cross(z, x), z], axis=2)
     return numpy.hstack([places, _quaternions(axes), numpy.array(MEAN_RADII_M)[:, None]])
+
+
+def _rows(hands: Mapping[str, Sequence], shape: tuple, origin_ns: int, arrival_ns: int) -> list:
+    rows = [[origin_ns, arrival_ns, side, 1, *numpy.asarray(hands[name]).ravel()]
+            for side, name in enumerate(HANDS) if hands.get(name) is not None]
+    return rows or [[origin_ns, arrival_ns, -1, *[0] * (1 + shape[0] * shape[1])]]
+
+
+def pose_rows(hands: Mapping[str, Sequence], origin_ns: int, arrival_ns: int) -> list:
+    """The rows of a sample for `handcast simulate --poses FILE.npy` (numpy.save). `hands` as for Pose.publish()."""
+    return _rows(hands, (JOINTS, 8), origin_ns, arrival_ns)
+
+
+def landmark_rows(hands: Mapping[str, Sequence], origin_ns: int, arrival_ns: int) -> list:
+    """The rows of an image for `handcast simulate --landmarks FILE.npy`. `hands`: by name, 21 x 2 px of the image."""
+    points = {name: numpy.hstack([places, [[1, 0]] * LANDMARKS]) for name, places in hands.items() if places is not None}
+    return _rows(points, (LANDMARKS, 4), origin_ns, arrival_ns)
 
 
 class Content(_Handle):

@@ -39,7 +39,7 @@ target_include_directories(handcast_client INTERFACE
 install(TARGETS handcast_client EXPORT handcastTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(module ipc/base ipc/msg ipc/shm ipc/ring ipc/client)
   install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/ipc
-    FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE)
+    FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE PATTERN c_calls.hpp EXCLUDE)
 endforeach()
 
 # The library for programs that draw, in any language.

@@ -20,12 +20,12 @@
 #include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/projection.hpp"
-#include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/writer.hpp"
 #include "tests/bench/control_rig.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/rings_transports.hpp"
+#include "tests/bench/watched_frames.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -48,33 +48,6 @@ client::Stream<T> stream_of(std::string_view name) {
   auto stream = client::open_stream<T>("twin", name);
   if (!stream) give_up(stream.error().what);
   return std::move(*stream);
-}
-
-/// The frames of a rig for some seconds.
-struct Frames {
-  std::vector<double> frame_us;  ///< Stage::frame
-  int missed = 0;                ///< refreshes between two frames without one
-};
-
-Frames watch_frames(double seconds) {
-  auto marks = stream_of<msg::StageMarks>("marks.projector");
-  Frames frames;
-  std::int64_t last_ns = 0;
-  for (const auto until = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(seconds)));
-       !until.passed();) {
-    const auto sample = marks.next(Deadline::in(100ms));
-    if (!sample) continue;
-    const auto& message = **sample;
-    for (std::uint32_t i = 0; i < message.count; ++i) {
-      const auto& mark = message.marks[i];
-      if (mark.stage != msg::Stage::frame) continue;
-      frames.frame_us.push_back(ns_to_us(mark.end_ns - mark.begin_ns));
-      const double periods = ns_to_seconds(mark.begin_ns - last_ns) * kRefresh_hz;
-      if (last_ns != 0 && periods > 1.5) frames.missed += static_cast<int>(periods - 0.5);
-      last_ns = mark.begin_ns;
-    }
-  }
-  return frames;
 }
 
 config::LiveBoard board_of_twin() {
@@ -174,7 +147,7 @@ void measure_frames(const RigFolder& folder, int turns, std::vector<Goal>& goals
     const auto watch = [&](const char* content) {
       change_ms(board, content);
       ::usleep(350'000);  // the transition
-      return watch_frames(1);
+      return watch_frames(1, kRefresh_hz);
     };
     const auto still = watch("builtin:atlas"), moving = watch("waves");
     still_us.push_back(median(still.frame_us));
