@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <random>
 #include <string>
@@ -71,10 +72,14 @@ void track(unsigned pause_us) {
 }
 
 void track_in_python(double seconds) {
-  const char* python = std::getenv("HANDCAST_PYTHON");
-  const auto text = std::to_string(seconds);
-  ::execl(python ? python : "/usr/bin/python3", "python3", HANDCAST_BENCH_TRACKER, text.c_str(),
-          nullptr);
+  const std::filesystem::path root(HANDCAST_BENCH_ROOT);
+  const auto library = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() /
+                       "lib/libhandcast.so.0";
+  ::setenv("PYTHONPATH", (root / "scripts").c_str(), 1);
+  ::setenv("HANDCAST_LIBRARY", library.c_str(), 1);
+  const auto program = root / "tests/bench/external_tracker.py";
+  // The Python for which scripts/setup --tests installs numpy.
+  ::execl("/usr/bin/python3", "python3", program.c_str(), std::to_string(seconds).c_str(), nullptr);
 }
 
 /// Writes noise over the ring of the tracker's samples, but its header.

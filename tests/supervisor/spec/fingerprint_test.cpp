@@ -187,8 +187,7 @@ TEST(Fingerprint, TheDeskDependsOnAllThatItLetsPeopleChange) {
 }
 
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
-  expect_reads("observer", {},
-               truth_and({"observer", "camera.backend"}),
+  expect_reads("observer", {}, truth_and({"observer", "camera.backend"}),
                {"observer.enabled", "observer.process.standby"});
 }
 
