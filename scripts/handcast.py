@@ -115,7 +115,8 @@ def _load():
             ("rig_open", whole, [text, ctypes.POINTER(pointer)]), ("rig_close", None, [pointer]),
             ("wait_image", whole, [pointer, ctypes.POINTER(_Image), whole]),
             ("wait_hands", whole, [pointer, hands, whole]), ("send_hands", whole, [pointer, hands]),
-            ("send_landmarks", whole, [pointer, ctypes.POINTER(_Landmarks)])):
+            ("send_landmarks", whole, [pointer, ctypes.POINTER(_Landmarks)]),
+            ("send_image", whole, [pointer, ctypes.POINTER(_Image)])):
         getattr(library, f"handcast_{function}").restype = result
         getattr(library, f"handcast_{function}").argtypes = arguments
     if library.handcast_abi() != ABI:
@@ -153,7 +154,7 @@ def now_ns() -> int:
 
 
 class Camera:
-    """The images of the rig's camera."""
+    """The images of the rig's camera; and the camera of a rig with camera.backend = "external"."""
 
     def __init__(self, rig: "Rig"):
         self._rig = rig
@@ -168,6 +169,14 @@ class Camera:
         pixels = numpy.frombuffer((ctypes.c_uint8 * size).from_address(image.pixels), numpy.uint8)
         pixels.flags.writeable = False
         return Frame(pixels.reshape(image.height, image.width), image.number, image.time_ns)
+
+    def publish(self, pixels: "numpy.ndarray", origin_ns: int) -> None:
+        """Sends an image: height x width, uint8, of the size in the calibration. `origin_ns`: the middle of its
+        exposure."""
+        pixels = numpy.ascontiguousarray(pixels, numpy.uint8)
+        height, width = pixels.shape
+        rig, image = self._rig, _Image(pixels.ctypes.data, width, height, 0, origin_ns)
+        rig._check(rig._library.handcast_send_image(rig._handle, image))
 
     def __iter__(self) -> Iterator[Frame]:
         while True:
@@ -238,7 +247,8 @@ class Landmarks:
 
 
 class Rig(_Handle):
-    """A rig that is up: `name`, or "" for the only one. `camera` and `hands` are read, `pose` and `landmarks` sent."""
+    """A rig that is up: `name`, or "" for the only one. `camera` and `hands` are read; `pose`, `landmarks` and
+    `camera` can be sent."""
 
     def __init__(self, name: str = ""):
         super().__init__()

@@ -5,8 +5,8 @@
 
 /**
  * A rig, for any program, in any language that can call C (-lhandcast, `pkg-config handcast-c`).
- * A program reads the images of its camera and the hands of its tracker, is its tracker or its
- * detector (pose.backend or landmarks.backend = "external"), or draws on its hands. Times are ns of
+ * A program reads the images of its camera and the hands of its tracker, takes the place of its
+ * tracker, detector or camera (back end "external"), or draws on its hands. Times are ns of
  * CLOCK_MONOTONIC; lengths are metres.
  *
  *     handcast_rig* rig;
@@ -142,12 +142,14 @@ handcast_result handcast_rig_open(const char* name, handcast_rig** rig);
 handcast_result handcast_wait_image(handcast_rig* rig, handcast_image* image, int timeout_ms);
 handcast_result handcast_wait_hands(handcast_rig* rig, handcast_both_hands* hands, int timeout_ms);
 
-/** Sends a sample of a tracker, or the landmarks of an image; does not wait. The rig uses them if
- *  pose.backend, or landmarks.backend, is "external". Times must increase, be at most 1 s old and
+/** Sends a sample of a tracker, the landmarks of an image, or an image, which must have the size of
+ *  the camera in the calibration; does not wait. The rig uses them if pose.backend,
+ *  landmarks.backend or camera.backend is "external". Times must increase, be at most 1 s old and
  *  at most 50 ms of the future. HANDCAST_BAD_DATA: it was not sent; the sentence says why.
  *  HANDCAST_UNAVAILABLE: another program sends. */
 handcast_result handcast_send_hands(handcast_rig* rig, const handcast_both_hands* hands);
 handcast_result handcast_send_landmarks(handcast_rig* rig, const handcast_landmarks* landmarks);
+handcast_result handcast_send_image(handcast_rig* rig, const handcast_image* image);
 
 /** Leaves the rig. NULL is ignored. */
 void handcast_rig_close(handcast_rig* rig);

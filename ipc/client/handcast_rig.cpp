@@ -2,6 +2,7 @@
 // The part of handcast.h that reads the images and hands of a rig and sends hands and landmarks.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <memory>
@@ -48,15 +49,19 @@ struct Outbox {
     return {};
   }
 
-  Result<void> send(const std::string& rig, std::string_view stream, T& message) {
+  /// Checks a message, and opens the way if it is not open.
+  Result<void> prepare(const std::string& rig, std::string_view stream, const T& message) {
     const auto time_ns = handcast::now_ns();
     if (auto time = check_guest_time(message.header.origin_ns, last_ns, time_ns); !time)
       return time;
     if (auto fits = check_guest(message); !fits) return fits;
-    if (!writer)
-      if (auto opened = open(rig, stream); !opened) return opened;
-    last_ns = message.header.origin_ns;
-    writer->publish(message);
+    return writer ? Result<void>() : open(rig, stream);
+  }
+  /// What to send is a message, or a loan of a prepared one.
+  template <class Sent>
+  Result<void> send(std::int64_t origin_ns, Sent&& sent) {
+    last_ns = origin_ns;
+    writer->publish(std::forward<Sent>(sent));
     return presence->silent();
   }
 };
@@ -87,6 +92,7 @@ struct handcast_rig {
   std::string name;
   Inbox<CameraFrame> images{};
   Inbox<HandPoses> hands{};
+  Outbox<CameraFrame> pictures{};
   Outbox<HandPoses> poses{};
   Outbox<Landmarks> landmarks{};
 };
@@ -124,6 +130,15 @@ HandPoses message_of(const handcast_both_hands& hands) {
     std::memcpy(pose.joints.data(), hands.joints[side], sizeof hands.joints[side]);
   }
   return poses;
+}
+
+/// Without its pixels.
+CameraFrame message_of(const handcast_image& image) {
+  CameraFrame frame;
+  frame.header = {image.number, image.time_ns, 0};
+  frame.width_px = static_cast<std::uint32_t>(std::max(image.width, 0));
+  frame.height_px = static_cast<std::uint32_t>(std::max(image.height, 0));
+  return frame;
 }
 
 Landmarks message_of(const handcast_landmarks& found) {
@@ -188,15 +203,36 @@ handcast_result handcast_send_hands(handcast_rig* rig, const handcast_both_hands
     if (!hands) return missing("handcast_send_hands", "hands");
     auto message = message_of(*hands);
     message.header.frame_id = ++rig->poses.number;
-    return rig->poses.send(rig->name, kGuestPoses, message);
+    return rig->poses.prepare(rig->name, kGuestPoses, message).and_then([&] {
+      return rig->poses.send(message.header.origin_ns, message);
+    });
   });
 }
 
 handcast_result handcast_send_landmarks(handcast_rig* rig, const handcast_landmarks* landmarks) {
   return with(rig, "handcast_send_landmarks", [&]() -> Result<void> {
     if (!landmarks) return missing("handcast_send_landmarks", "landmarks");
-    auto message = message_of(*landmarks);
-    return rig->landmarks.send(rig->name, kGuestLandmarks, message);
+    const auto message = message_of(*landmarks);
+    return rig->landmarks.prepare(rig->name, kGuestLandmarks, message).and_then([&] {
+      return rig->landmarks.send(message.header.origin_ns, message);
+    });
+  });
+}
+
+handcast_result handcast_send_image(handcast_rig* rig, const handcast_image* image) {
+  return with(rig, "handcast_send_image", [&]() -> Result<void> {
+    if (!image || !image->pixels) return missing("handcast_send_image", "image");
+    const auto head = message_of(*image);
+    if (auto ready = rig->pictures.prepare(rig->name, kGuestImages, head); !ready) return ready;
+    auto loan = rig->pictures.writer->loan();
+    if (!loan) return fail(Errc::timeout, "handcast_send_image: the rig still reads the last ones");
+    if (head.used_bytes() > sizeof(CameraFrame) + loan.tail_bytes())
+      return fail(Errc::bad_data,
+                  fmt::format("an image of {}x{} px does not fit into the rig's ring", image->width,
+                              image->height));
+    *loan = head;
+    std::memcpy(loan->pixels(), image->pixels, head.used_bytes() - sizeof(CameraFrame));
+    return rig->pictures.send(head.header.origin_ns, std::move(loan));
   });
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "ipc/base/result.hpp"
+#include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 
@@ -88,6 +89,16 @@ inline Result<void> check_point(const Landmark& point, int number) {
 }
 
 }  // namespace guest
+
+/// Whether this is an image. Its size was compared with its ring.
+inline Result<void> check_guest(const CameraFrame& frame) {
+  constexpr std::int64_t kLongest_ns = 1'000'000'000;
+  if (frame.width_px == 0 || frame.height_px == 0)
+    return fail(Errc::bad_data, "an image has no pixels");
+  if (frame.exposure_ns < 0 || frame.exposure_ns > kLongest_ns)
+    return fail(Errc::bad_data, "an exposure is not 0 to 1 s");
+  return {};
+}
 
 /// Whether these are hands, as far as their numbers show.
 /// @{

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <span>
 #include <utility>
 
 #include "ipc/msg/guest_streams.hpp"
@@ -19,18 +20,19 @@ class ExternalDetector final : public Detector {
 
   Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints&,
                                 Deadline deadline) override {
-    auto sent = guests_.latest(deadline);
+    const auto sent = guests_.latest(deadline);
     if (const bool is_first = std::exchange(is_first_, false); !sent) {
-      if (!is_first || sent.error().code != Errc::timeout) return sent;
+      if (!is_first || sent.error().code != Errc::timeout) return tl::make_unexpected(sent.error());
       return msg::Landmarks{.header = {frame.header.frame_id, frame.header.origin_ns, 0}};
     }
-    for (std::uint32_t hand = 0; hand < sent->count; ++hand)
-      for (auto& point : sent->hands[hand].points) {
+    msg::Landmarks found = **sent;
+    for (auto& hand : std::span(found.hands).first(found.count))
+      for (auto& point : hand.points) {
         const auto straight = lens_.undistort({point.x_px, point.y_px});
         point.x_px = static_cast<float>(straight.x);
         point.y_px = static_cast<float>(straight.y);
       }
-    return sent;
+    return found;
   }
 
  private:

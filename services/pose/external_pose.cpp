@@ -17,7 +17,7 @@ class ExternalPose final : public PoseSource {
     const auto sent = guests_.latest(deadline);
     if (!sent && (number_ > 0 || sent.error().code != Errc::timeout))
       return fail_in("pose 'external'", sent.error());
-    poses = sent.value_or(msg::HandPoses{.header = {.origin_ns = now_ns()}});
+    poses = sent ? **sent : msg::HandPoses{.header = {.origin_ns = now_ns()}};
     poses.header = {++number_, poses.header.origin_ns, 0};
     poses.calibration = 0;
     return {};

@@ -34,17 +34,19 @@ class GuestStream {
 
   /// The newest message that was not seen yet; waits for it until the deadline. Errors: timeout,
   /// bad_data (one was left out; the sentence says why).
-  Result<T> latest(Deadline deadline) {
+  Result<ipc::Sample<T>> latest(Deadline deadline) {
     sleep_until_ns(std::min(deadline.time_ns(), next_ns_));
     const auto begin_ns = now_ns();
     if (begin_ns < next_ns_) return silence();
-    const auto sample = reader_->latest(deadline);
+    auto sample = reader_->latest(deadline);
     const auto time_ns = now_ns();
     const bool is_noise = !sample && sample.error().code != Errc::timeout;
     next_ns_ = time_ns + (is_noise ? kAfterNoise_ns : kShortest_ns);
     if (is_noise || (sample && was_not_woken(*sample, begin_ns, time_ns))) (void)renew();
     if (is_noise) return left_out(sample.error().what);
-    return sample ? checked(**sample, time_ns) : silence();
+    if (!sample) return silence();
+    if (auto usable = check(**sample, time_ns); !usable) return left_out(usable.error().what);
+    return sample;
   }
 
  private:
@@ -76,13 +78,13 @@ class GuestStream {
     return {};
   }
 
-  Result<T> checked(const T& message, std::int64_t time_ns) {
+  Result<void> check(const T& message, std::int64_t time_ns) {
     heard_ns_ = time_ns;
     if (auto time = msg::check_guest_time(message.header.origin_ns, last_ns_, time_ns); !time)
-      return left_out(time.error().what);
-    if (auto fits = msg::check_guest(message); !fits) return left_out(fits.error().what);
+      return time;
+    if (auto fits = msg::check_guest(message); !fits) return fits;
     last_ns_ = message.header.origin_ns;
-    return message;
+    return {};
   }
 
   tl::unexpected<Error> left_out(const std::string& why) const {

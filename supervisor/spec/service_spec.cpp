@@ -60,6 +60,9 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::LiveSettings>(std::string(msg::kLiveSettings), 8, kNewestOnly),
       guest_ring("guest.left"),
       guest_ring("guest.right"),
+      RingSpec::of<msg::CameraFrame>(
+          std::string(msg::kGuestImages), kPictureSlots, kNewestOnly,
+          msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
       RingSpec::of<msg::HandPoses>(std::string(msg::kGuestPoses), kGuestHistory, kWithHistory),
       RingSpec::of<msg::Landmarks>(std::string(msg::kGuestLandmarks), kGuestHistory, kWithHistory),
   };

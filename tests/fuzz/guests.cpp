@@ -52,7 +52,7 @@ void send(fuzz::Reader& input, std::string_view stream) {
   }
   const auto taken = guests.latest(Deadline::now());
   if (taken)
-    require_usable(*taken);
+    require_usable(**taken);
   else
     fuzz::require(!taken.error().what.empty());
 }

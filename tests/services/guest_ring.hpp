@@ -18,9 +18,9 @@ namespace handcast::test {
 template <class T>
 class GuestRing {
  public:
-  explicit GuestRing(std::string_view stream)
-      : segment_(
-            ipc::Segment::create(ipc::RingSpec::of<T>(std::string(stream), 16, true)).value()) {
+  explicit GuestRing(std::string_view stream, std::size_t bytes = sizeof(T))
+      : segment_(ipc::Segment::create(ipc::RingSpec::of<T>(std::string(stream), 16, true, bytes))
+                     .value()) {
     begin();
   }
 
@@ -33,7 +33,8 @@ class GuestRing {
     writer_.reset();
     writer_.emplace(ipc::Writer<T>::attach(again().value()).value());
   }
-  void send(const T& message) { writer_->publish(message); }
+  void send(const T& message) requires(!ipc::HasTail<T>) { writer_->publish(message); }
+  void send(ipc::Loan<T>&& message) { writer_->publish(std::move(message)); }
   /// Begins a message and does not publish it.
   ipc::Loan<T> stop_in_the_middle() { return writer_->loan(); }
   /// Writes noise over everything behind the header.

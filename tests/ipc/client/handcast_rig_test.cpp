@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "ipc/base/clock.hpp"
@@ -27,6 +28,7 @@ class HandcastRig : public RigWithRings {
     RigWithRings::SetUp();
     give({{"camera.frames", images_.fd()},
           {"pose.hands", hands_.fd()},
+          {"guest.camera", pictures_.fd()},
           {"guest.pose", poses_.fd()},
           {"guest.landmarks", landmarks_.fd()}});
     ASSERT_EQ(turning([this] { return handcast_rig_open("", &rig_); }), HANDCAST_OK) << sentence_;
@@ -58,6 +60,7 @@ class HandcastRig : public RigWithRings {
   }
 
   ipc::Segment images_ = ring<msg::CameraFrame>("camera.frames", msg::CameraFrame::bytes(4, 3)),
+               pictures_ = ring<msg::CameraFrame>("guest.camera", msg::CameraFrame::bytes(4, 3)),
                hands_ = ring<msg::HandPoses>("pose.hands"),
                poses_ = ring<msg::HandPoses>("guest.pose"),
                landmarks_ = ring<msg::Landmarks>("guest.landmarks");
@@ -127,6 +130,24 @@ TEST_F(HandcastRig, SendsLandmarks) {
   EXPECT_EQ(sent->hands[0].presence, 0.5f);
   EXPECT_EQ(sent->hands[0].points[20].y_px, 4);
   EXPECT_EQ(sent->hands[0].points[20].sigma_px, 2);
+}
+
+TEST_F(HandcastRig, SendsImages) {
+  auto reader = must(ipc::Reader<msg::CameraFrame>::watch(again(pictures_)));
+  const std::array<std::uint8_t, 12> pixels{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  handcast_image image{pixels.data(), 4, 3, 6, handcast_now()};
+  const auto send = [&] { return turning([&] { return handcast_send_image(rig_, &image); }); };
+  ASSERT_EQ(send(), HANDCAST_OK) << sentence_;
+  const auto sent = must(reader.latest(Deadline::now()));
+  EXPECT_EQ(sent->header.frame_id, 6u);
+  EXPECT_EQ(sent->header.origin_ns, image.time_ns);
+  EXPECT_EQ(sent->pixels()[11], 12);
+  for (const auto& [width, height] : {std::pair{4, 4}, {0, 3}, {-1, -1}, {1 << 30, 1 << 30}}) {
+    image = {pixels.data(), width, height, 7, handcast_now()};
+    EXPECT_EQ(send(), HANDCAST_BAD_DATA) << width << "x" << height;
+  }
+  image = {nullptr, 4, 3, 8, handcast_now()};
+  EXPECT_EQ(send(), HANDCAST_WRONG_USE);
 }
 
 TEST_F(HandcastRig, WhatTheRigWouldLeaveOutIsNotSentAndTheSentenceSaysWhy) {

@@ -63,7 +63,7 @@ TEST_F(GuestStreamTest, GivesTheNewestThatWasSent) {
   ring_.send(hand_at(first_ns + 1));
   const auto taken = guests_.latest(Deadline::in(1s));
   ASSERT_TRUE(taken) << taken.error().what;
-  EXPECT_EQ(taken->header.origin_ns, first_ns + 1);
+  EXPECT_EQ((*taken)->header.origin_ns, first_ns + 1);
   const auto silence = guests_.latest(Deadline::in(5ms));
   ASSERT_FALSE(silence);
   EXPECT_EQ(silence.error().code, Errc::timeout);
