@@ -41,7 +41,7 @@ class TwinFeed : public SensorFeed {
     }
     if (lifter_) lift(now_ns, events);
     if (second_)
-      for (auto& made : second_->until(now_ns, events, poses)) lifted_.push_back(std::move(made));
+      for (const auto& made : second_->until(now_ns, events, poses)) lifted_.push_back(made);
     std::ranges::stable_sort(events, {}, &SensorEvent::arrival_ns);
     return events;
   }
