@@ -4,8 +4,27 @@
 #include <stdint.h>
 
 /**
- * Pictures for the hands of a rig, from any program, in any language that can call C
- * (-lhandcast, `pkg-config handcast-c`). The rig shows them where its content says so:
+ * A rig, for any program, in any language that can call C (-lhandcast, `pkg-config handcast-c`).
+ * A program reads the images of its camera and the hands of its tracker, takes the place of its
+ * tracker, detector or camera (back end "external"), or draws on its hands. Times are ns of
+ * CLOCK_MONOTONIC; lengths are metres.
+ *
+ *     handcast_rig* rig;
+ *     if (handcast_rig_open("", &rig) != HANDCAST_OK) ...
+ *     handcast_image image;
+ *     while (handcast_wait_image(rig, &image, 1000) == HANDCAST_OK) {
+ *       handcast_landmarks found = {0};
+ *       found.image = image.number;
+ *       found.time_ns = image.time_ns;
+ *       detect(image.pixels, &found);
+ *       handcast_send_landmarks(rig, &found);
+ *     }
+ *     handcast_rig_close(rig);
+ *
+ * The rig checks what it gets, counts what it leaves out and names it in its log. A program that
+ * sends nothing, stops or dies is a sensor that is silent.
+ *
+ * Pictures for the hands are shown where the rig's content says so:
  *
  *     handcast content program: --hand left
  *
@@ -23,18 +42,23 @@
  * padding; colours are sRGB, multiplied by alpha unless handcast_set_straight() says otherwise.
  *
  * Functions return HANDCAST_OK, or an error of which handcast_error() is the sentence. No wrong use
- * of a pointer that handcast_open() gave, NULL included, ends the program. The program cannot
+ * of a pointer that an opening function gave, NULL included, ends the program. The program cannot
  * disturb the rig: the rig goes on without it, and its last picture stays as long as it lasts.
  *
- * Threads: a handcast_content belongs to one thread at a time; several may be used on several
- * threads. Times are ns of CLOCK_MONOTONIC.
+ * Threads: a handle belongs to one thread at a time; several may be used on several threads.
  */
 #ifdef __cplusplus
 extern "C" {
 #endif
 
+/** Raised when a program that was compiled with an older header would no longer work. */
+#define HANDCAST_ABI 0
+
 /** A writer of pictures for one hand. */
 typedef struct handcast_content handcast_content;
+
+/** A rig whose sensors are read or taken the place of. */
+typedef struct handcast_rig handcast_rig;
 
 typedef enum handcast_result {
   HANDCAST_OK = 0,
@@ -45,7 +69,13 @@ typedef enum handcast_result {
   HANDCAST_UNAVAILABLE = 5   /**< no rig is up, or another program draws; try again later */
 } handcast_result;
 
-enum { HANDCAST_LEFT = 0, HANDCAST_RIGHT = 1, HANDCAST_JOINTS = 26, HANDCAST_LARGEST = 1024 };
+enum {
+  HANDCAST_LEFT = 0,
+  HANDCAST_RIGHT = 1,
+  HANDCAST_JOINTS = 26,
+  HANDCAST_LANDMARKS = 21,
+  HANDCAST_LARGEST = 1024
+};
 
 /** A joint in the space of the tracker. Axes of its orientation as in OpenXR: +x to the right, +y
  *  out of the back of the hand, -z to the tip. */
@@ -55,7 +85,7 @@ typedef struct handcast_joint {
   float radius_m;            /**< from the joint to the skin */
 } handcast_joint;
 
-/** Both hands, from the newest sample of the tracker. */
+/** Both hands in one sample of the tracker. */
 typedef struct handcast_both_hands {
   int64_t time_ns; /**< when the sample was taken */
   /** 1 if the tracker sees the hand; otherwise 0, and its joints are 0. Left, right. */
@@ -64,12 +94,65 @@ typedef struct handcast_both_hands {
   handcast_joint joints[2][HANDCAST_JOINTS];
 } handcast_both_hands;
 
+/** An image of the rig's camera: 8-bit grey, row 0 at the top, without padding. The pixels are
+ *  valid until the next handcast_wait_image() or handcast_rig_close(). */
+typedef struct handcast_image {
+  const uint8_t* pixels;
+  int32_t width, height;
+  uint64_t number; /**< counted by the camera */
+  int64_t time_ns; /**< the middle of its exposure */
+} handcast_image;
+
+/** One landmark, px of the image as the lens forms it: x from the centre of the leftmost pixel to
+ *  the right, y from that of the topmost one down. */
+typedef struct handcast_point {
+  float x_px, y_px;
+  float confidence; /**< 0 to 1; 0: not seen */
+  float sigma_px;   /**< standard deviation of x and of y; 0: unknown */
+} handcast_point;
+
+/** The landmarks of both hands in one image. */
+typedef struct handcast_landmarks {
+  uint64_t image;    /**< handcast_image::number */
+  int64_t time_ns;   /**< handcast_image::time_ns */
+  float presence[2]; /**< 0 to 1: how likely the hand is there; 0: it is not. Left, right. */
+  /** In the order of MediaPipe: wrist, then thumb to little finger, each from palm to tip. */
+  handcast_point points[2][HANDCAST_LANDMARKS];
+} handcast_landmarks;
+
 /** The version of the library: "0.1.0". */
 const char* handcast_version(void);
+
+/** The HANDCAST_ABI that the library was made with. */
+int handcast_abi(void);
+
+/** The time now. */
+int64_t handcast_now(void);
 
 /** The sentence of the last error on this thread; "" if there was none. Valid until the next call
  *  on it. */
 const char* handcast_error(void);
+
+/** Opens a rig that is up. `name`: its name; "" or NULL: the only one. On an error `*rig` is NULL. */
+handcast_result handcast_rig_open(const char* name, handcast_rig** rig);
+
+/** Waits for an image of the camera, or a sample of the tracker, that is newer than the last one
+ *  that was given; older ones are skipped. HANDCAST_TIMEOUT after `timeout_ms`, 0 to 10000: the
+ *  result is all 0. HANDCAST_DISCONNECTED about 3 s after the rig went down. */
+handcast_result handcast_wait_image(handcast_rig* rig, handcast_image* image, int timeout_ms);
+handcast_result handcast_wait_hands(handcast_rig* rig, handcast_both_hands* hands, int timeout_ms);
+
+/** Sends a sample of a tracker, the landmarks of an image, or an image, which must have the size of
+ *  the camera in the calibration; does not wait. The rig uses them if pose.backend,
+ *  landmarks.backend or camera.backend is "external". Times must increase, be at most 1 s old and
+ *  at most 50 ms of the future. HANDCAST_BAD_DATA: it was not sent; the sentence says why.
+ *  HANDCAST_UNAVAILABLE: another program sends. */
+handcast_result handcast_send_hands(handcast_rig* rig, const handcast_both_hands* hands);
+handcast_result handcast_send_landmarks(handcast_rig* rig, const handcast_landmarks* landmarks);
+handcast_result handcast_send_image(handcast_rig* rig, const handcast_image* image);
+
+/** Leaves the rig. NULL is ignored. */
+void handcast_rig_close(handcast_rig* rig);
 
 /** Opens a rig that is up, to draw on one of its hands. `rig`: its name; "" or NULL: the only one.
  *  `hand`: HANDCAST_LEFT or HANDCAST_RIGHT. Size of the pictures in pixels, 1 to HANDCAST_LARGEST.

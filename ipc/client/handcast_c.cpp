@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
-#include <exception>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/version.hpp"
+#include "ipc/client/c_calls.hpp"
 #include "ipc/client/handcast.h"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/guest_picture.hpp"
@@ -19,7 +16,6 @@
 #include "ipc/ring/writer.hpp"
 
 using handcast::Errc;
-using handcast::Error;
 using handcast::fail;
 using handcast::Result;
 using handcast::msg::GuestPicture;
@@ -40,66 +36,12 @@ struct handcast_content {
 
 namespace {
 
-static_assert(HANDCAST_JOINTS == handcast::msg::kJoints);
 static_assert(HANDCAST_LARGEST == GuestPicture::kLargest_px);
-static_assert(sizeof(handcast_joint) == sizeof(handcast::msg::Joint));
-
-thread_local std::string last_error;
-
-/// All handles that are open, so that a pointer that was closed is an error and no crash.
-struct OpenContents {
-  std::mutex mutex;
-  std::vector<handcast_content*> all;
-};
-OpenContents& open_contents() {
-  static auto* const contents = new OpenContents;  // outlives threads that end after main()
-  return *contents;
-}
-
-handcast_result result_of(const Error& error) {
-  last_error = error.what;
-  switch (error.code) {
-    case Errc::timeout:
-      return HANDCAST_TIMEOUT;
-    case Errc::bad_data:
-      return HANDCAST_BAD_DATA;
-    case Errc::disconnected:
-      return HANDCAST_DISCONNECTED;
-    case Errc::bad_config:
-      return HANDCAST_WRONG_USE;
-    case Errc::unavailable:
-      break;
-  }
-  return HANDCAST_UNAVAILABLE;
-}
-
-/// Calls `work`, which returns a Result<void>; an exception, of which only a lack of memory is
-/// expected, is an error, too.
-template <class Work>
-handcast_result guarded(const Work& work) {
-  try {
-    last_error.clear();
-    if (const Result<void> done = work(); !done) return result_of(done.error());
-    return HANDCAST_OK;
-  } catch (const std::exception& fault) {
-    return result_of({Errc::unavailable, fault.what()});
-  }
-}
 
 /// The same for an open handle.
 template <class Work>
 handcast_result with(handcast_content* content, const char* function, const Work& work) {
-  return guarded([&]() -> Result<void> {
-    {
-      const std::lock_guard lock(open_contents().mutex);
-      if (std::ranges::find(open_contents().all, content) == open_contents().all.end())
-        return fail(Errc::bad_config,
-                    fmt::format("{}: this is not an open content; handcast_open() gives one, and "
-                                "handcast_close() ends it",
-                                function));
-    }
-    return work();
-  });
+  return handcast::client::with(content, function, "handcast_open", "handcast_close", work);
 }
 
 Result<void> check_size(const char* function, int width, int height) {
@@ -142,26 +84,15 @@ Result<void> take_poses(handcast_content& content, handcast::Deadline deadline) 
   return {};
 }
 
-void fill_in(const HandPoses& poses, handcast_both_hands& hands) {
-  hands.time_ns = poses.header.origin_ns;
-  for (const auto side : {handcast::msg::Side::left, handcast::msg::Side::right}) {
-    const auto* pose = poses.find(side);
-    const auto index = static_cast<std::size_t>(side);
-    if (!pose) continue;
-    hands.is_there[index] = 1;
-    std::memcpy(hands.joints[index], pose->joints.data(), sizeof hands.joints[index]);
-  }
-}
-
 }  // namespace
 
 const char* handcast_version() { return handcast::version().data(); }
 
-const char* handcast_error() { return last_error.c_str(); }
+const char* handcast_error() { return handcast::client::last_error.c_str(); }
 
 handcast_result handcast_open(const char* rig, int hand, int width, int height,
                               handcast_content** content) {
-  return guarded([&]() -> Result<void> {
+  return handcast::client::guarded([&]() -> Result<void> {
     if (!content)
       return fail(Errc::bad_config, "handcast_open: `content` is NULL; it takes the result");
     *content = nullptr;
@@ -174,9 +105,7 @@ handcast_result handcast_open(const char* rig, int hand, int width, int height,
     auto opened = open_content(rig ? rig : "", hand, width, height);
     if (!opened) return tl::make_unexpected(opened.error());
     if (auto fits = check_room(**opened, width, height); !fits) return fits;
-    const std::lock_guard lock(open_contents().mutex);
-    open_contents().all.push_back(opened->get());
-    *content = opened->release();
+    *content = handcast::client::Handles<handcast_content>::add(std::move(*opened));
     return {};
   });
 }
@@ -251,7 +180,7 @@ handcast_result handcast_hands(handcast_content* content, handcast_both_hands* h
       return fail(Errc::bad_config, "handcast_hands: `hands` is NULL; it takes the result");
     auto taken = take_poses(*content, handcast::Deadline::now());
     if (!taken && (taken.error().code != Errc::timeout || !content->newest)) return taken;
-    fill_in(*content->newest, *hands);
+    *hands = handcast::client::both_hands(*content->newest);
     return {};
   });
 }
@@ -269,11 +198,7 @@ handcast_result handcast_wait(handcast_content* content, int timeout_ms) {
 void handcast_close(handcast_content* content) {
   if (!content) return;
   with(content, "handcast_close", [&]() -> Result<void> {
-    {
-      const std::lock_guard lock(open_contents().mutex);
-      std::erase(open_contents().all, content);
-    }
-    delete content;
+    handcast::client::Handles<handcast_content>::remove(content);
     return {};
   });
 }

@@ -11,7 +11,7 @@
 namespace handcast::client {
 
 /// A ring of a rig that is up, mapped read-only unless a tool may write to it (msg::kTestPictures,
-/// msg::kGuestPictures).
+/// those of msg::is_for_guests()).
 struct RigRing {
   std::string rig;       ///< name of the rig
   ipc::Segment segment;  ///< the memory of the ring

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "renderer/content/chart_raster.hpp"
 #include "renderer/draw/cpu/nearest_pixel.hpp"
 
 namespace handcast::renderer {
@@ -77,8 +78,6 @@ class JointShares {
   int leader_ = -1;  ///< find_leader(): index into joints_
 };
 
-double cross(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
-
 }  // namespace
 
 ChartMap::ChartMap(const HandMesh& hand, int width, int height)
@@ -93,41 +92,18 @@ ChartMap::ChartMap(const HandMesh& hand, int width, int height)
 }
 
 void ChartMap::draw_triangle(const HandMesh& hand, const std::array<std::uint16_t, 3>& corners) {
-  const glm::dvec2 size(texels_.width(), texels_.height());
-  std::array<glm::dvec2, 3> at;  // in texels, whole numbers at texel centres
-  for (int k = 0; k < 3; ++k) at[k] = glm::dvec2(hand.uv[corners[k]]) * size - 0.5;
-  const double area = cross(at[1] - at[0], at[2] - at[0]);
-  if (area == 0) return;
-  const glm::dvec2 low = glm::min(at[0], glm::min(at[1], at[2])),
-                   high = glm::max(at[0], glm::max(at[1], at[2]));
-  const Rect box =
-      Rect{static_cast<int>(std::ceil(low.x)), static_cast<int>(std::ceil(low.y)),
-           static_cast<int>(std::floor(high.x)) + 1, static_cast<int>(std::floor(high.y)) + 1}
-          .within(texels_.width(), texels_.height());
   const JointShares shares(hand, corners);
   const std::uint8_t chart = hand.chart[corners[0]];
-  constexpr double kSlack = 1e-9;  // texels on a shared edge may be drawn twice, but not missed
-  const double clearly_outside = -1e-6 * std::abs(area), sign = area < 0 ? -1 : 1;
-  for (int y = box.y0; y < box.y1; ++y) {
-    for (int x = box.x0; x < box.x1; ++x) {
-      const glm::dvec2 p(x, y);
-      const Parts areas{cross(at[2] - at[1], p - at[1]), cross(at[0] - at[2], p - at[2]),
-                        cross(at[1] - at[0], p - at[0])};
-      // Saves the divisions, which take most of the time.
-      if (sign * areas[0] < clearly_outside || sign * areas[1] < clearly_outside ||
-          sign * areas[2] < clearly_outside)
-        continue;
-      const Parts part{areas[0] / area, areas[1] / area, areas[2] / area};
-      if (std::min({part[0], part[1], part[2]}) < -kSlack) continue;
-      glm::vec3 rest_mm{0};
-      for (int k = 0; k < 3; ++k)
-        rest_mm += 1000.f * static_cast<float>(part[k]) * hand.positions[corners[k]];
-      rest_mm = in_wrist_mm(hand, rest_mm);
-      texels_.at(x, y) = {chart, shares.strongest(part), kEdgeReach, {rest_mm.x, rest_mm.z}};
-      on_.at(x, y) = 1;
-      off_.at(x, y) = 0;
-    }
-  }
+  for_each_texel(
+      hand, corners, texels_.width(), texels_.height(), [&](int x, int y, const Parts& parts) {
+        glm::vec3 rest_mm{0};
+        for (std::size_t k = 0; k < 3; ++k)
+          rest_mm += 1000.f * static_cast<float>(parts[k]) * hand.positions[corners[k]];
+        rest_mm = in_wrist_mm(hand, rest_mm);
+        texels_.at(x, y) = {chart, shares.strongest(parts), kEdgeReach, {rest_mm.x, rest_mm.z}};
+        on_.at(x, y) = 1;
+        off_.at(x, y) = 0;
+      });
 }
 
 void ChartMap::measure_edges() {

@@ -8,7 +8,7 @@ set(share ${HANDCAST_INSTALL_SHAREDIR})
 install(DIRECTORY config/rigs config/calibrations config/sweeps DESTINATION ${share})
 install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts)
 install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
-install(FILES scripts/handcast_content.py DESTINATION ${share}/python)
+install(FILES scripts/handcast.py DESTINATION ${share}/python)
 
 # The documents, in the folders that their links lead to.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE
@@ -18,7 +18,7 @@ install(DIRECTORY config/rigs DESTINATION ${CMAKE_INSTALL_DOCDIR}/config)
 foreach(file
     config/REFERENCE.md config/assets/leap/bring_up.txt config/assets/desk.png config/assets/looks.png config/assets/preview.png config/assets/readme.png config/assets/readme_looks.png config/assets/template.png ipc/ring/README.md
     renderer/README.md scripts/read_recording.py services/lab/training/MODEL_CARD.md
-    tests/client/CMakeLists.txt tests/client/draw_ring.c tests/client/draw_waves.py tests/client/read_projections.cpp)
+    tests/client/CMakeLists.txt tests/client/draw_ring.c tests/client/detect_hands.py tests/client/draw_waves.py tests/client/hands_to_json.py tests/client/json_to_hands.py tests/client/read_projections.cpp)
   cmake_path(GET file PARENT_PATH folder)
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
 endforeach()
@@ -39,7 +39,7 @@ target_include_directories(handcast_client INTERFACE
 install(TARGETS handcast_client EXPORT handcastTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 foreach(module ipc/base ipc/msg ipc/shm ipc/ring ipc/client)
   install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/ipc
-    FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE)
+    FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE PATTERN c_calls.hpp EXCLUDE)
 endforeach()
 
 # The library for programs that draw, in any language.

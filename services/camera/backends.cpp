@@ -15,6 +15,8 @@ Result<void> check_leap(const Opening&);
 #endif
 Result<std::unique_ptr<Camera>> open_twin(const Opening&);
 Result<std::unique_ptr<Camera>> open_replay(const Opening&);
+Result<std::unique_ptr<Camera>> open_external(const Opening&);
+Result<void> check_external(const Opening&);
 Result<std::unique_ptr<Camera>> open_v4l2(const Opening&);
 
 static constexpr std::array kBackends{
@@ -35,6 +37,10 @@ static constexpr std::array kBackends{
                       "array.",
                   .open = open_replay,
                   .reads = {"camera.replay"}},
+    CameraBackend{.name = "external",
+                  .sentence = "A program of your own, in any language, by handcast.h.",
+                  .open = open_external,
+                  .check = check_external},
     CameraBackend{.name = "v4l2",
                   .sentence = "A webcam, by the kernel's own interface (Video4Linux).",
                   .open = open_v4l2,
@@ -62,9 +68,11 @@ Result<Opening> opening_of(const config::Rig& rig, const calib::Calibration& cal
 
 Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig,
                                             const calib::Calibration& calibration,
-                                            std::int64_t epoch_ns, config::Viewpoint at) {
-  const auto with = opening_of(rig, calibration, epoch_ns, at);
+                                            std::int64_t epoch_ns, config::Viewpoint at,
+                                            const ipc::OpenRing& ring) {
+  auto with = opening_of(rig, calibration, epoch_ns, at);
   if (!with) return tl::make_unexpected(with.error());
+  with->ring = ring;
   const auto name = config::name_at(at, "camera");
   const auto row = service::find_backend(name, with->settings.backend, camera_backends());
   if (!row) return tl::make_unexpected(row.error());

@@ -13,6 +13,7 @@
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/ring/reader.hpp"
+#include "ipc/shm/open_ring.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::camera {
@@ -60,6 +61,7 @@ struct Opening {
   config::Viewpoint at{};          ///< which of the rig's cameras it is
   const config::Camera& settings;  ///< its section of the rig
   calib::PlacedCamera camera;      ///< its lens and place by the calibration
+  ipc::OpenRing ring{};            ///< gives the rings of the rig; empty if there is none
 };
 
 /// The opening of the camera at a viewpoint. Errors: bad_config (the calibration has no second
@@ -75,12 +77,14 @@ using CameraBackend = service::Backend<Camera, Opening>;
 /// All back ends of this build.
 std::span<const CameraBackend> camera_backends();
 
-/// Opens the back end that the rig names for the camera at a viewpoint. Errors: bad_config (unknown
-/// back end, or its settings are wrong), those of opening_of() and of the back end.
+/// Opens the back end that the rig names for the camera at a viewpoint. `ring`: see Opening.
+/// Errors: bad_config (unknown back end, or its settings are wrong), those of opening_of() and of
+/// the back end.
 Result<std::unique_ptr<Camera>> open_camera(const config::Rig& rig,
                                             const calib::Calibration& calibration,
                                             std::int64_t epoch_ns,
-                                            config::Viewpoint at = config::Viewpoint::first);
+                                            config::Viewpoint at = config::Viewpoint::first,
+                                            const ipc::OpenRing& ring = {});
 /// Checks it: see service::Backend::check. Errors: those of open_camera().
 Result<void> check_camera(const config::Rig& rig, const calib::Calibration& calibration,
                           config::Viewpoint at);

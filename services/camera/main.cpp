@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "config/second_view.hpp"
+#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "services/camera/camera.hpp"
 #include "services/runtime/context.hpp"
@@ -59,7 +60,8 @@ static void run_camera(service::Context& context, Viewpoint at) {
   const auto& backend = config::camera_at(context.rig(), at).backend;
   if (service::is_exclusive(backend, camera::camera_backends())) context.stand_by();
   const auto source =
-      must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns(), at));
+      must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns(), at,
+                               [&](std::string_view stream) { return context.ring(stream); }));
   context.stand_by();
   auto frames = must(context.writer<msg::CameraFrame>(ring));
   auto second_frames = must(second_frames_of(*source, context, at));
@@ -116,7 +118,9 @@ static daemon::ServiceDescription describe(Viewpoint at) {
                                    .settings = {"camera.rate_hz", "camera.exposure_ms"},
                                    .backends = service::describe_rows(camera::camera_backends())};
   auto description = service::describe_at(at, std::move(first));
-  if (at == Viewpoint::first) description.publishes.emplace_back("camera2.frames");
+  if (at == Viewpoint::second) return description;
+  description.publishes.emplace_back("camera2.frames");
+  description.subscribes.emplace_back(msg::kGuestImages);
   return description;
 }
 

@@ -35,7 +35,7 @@ std::optional<T> given(Result<T> result, const std::function<void(const Error&)>
 }  // namespace
 
 Contents::Contents(Hands hands, const config::Rig& filed, const calib::Calibration& calibration,
-                   Streams streams, const OpenRing& ring,
+                   Streams streams, const ipc::OpenRing& ring,
                    std::function<void(const Error&)> tolerate)
     : filed_(filed),
       hands_(std::move(hands)),

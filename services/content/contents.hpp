@@ -87,16 +87,13 @@ struct Streams {
   std::array<ipc::Writer<msg::ContentPicture>, 2> pictures;  ///< left, right
 };
 
-/// Gives the ring of a stream of the rig, see Opening::ring.
-using OpenRing = std::function<Result<ipc::Segment>(std::string_view stream)>;
-
 /// The contents of both hands, and what moves them. One thread.
 class Contents {
  public:
   /// `filed`: the rig of the file. `calibration` outlives it. `tolerate` gets errors of the rings
   /// other than timeouts.
   Contents(Hands hands, const config::Rig& filed, const calib::Calibration& calibration,
-           Streams streams, const OpenRing& ring, std::function<void(const Error&)> tolerate);
+           Streams streams, const ipc::OpenRing& ring, std::function<void(const Error&)> tolerate);
 
   /// Shows what was asked for last: in the file, or live. `before`: the state that a
   /// process before this one has left. What it died with is refused, and what it showed goes on.

@@ -30,7 +30,7 @@ static content::Streams streams_of(service::Context& context) {
 }
 
 /// Gives further mappings of the rings of other people's programs.
-static content::OpenRing guests_of(service::Context& context) {
+static ipc::OpenRing guests_of(service::Context& context) {
   const auto guests = std::make_shared<std::map<std::string, ipc::Segment, std::less<>>>();
   for (const auto stream : msg::kGuestPictures) guests->emplace(stream, must(context.ring(stream)));
   return [guests](std::string_view stream) -> Result<ipc::Segment> {

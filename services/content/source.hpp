@@ -16,7 +16,7 @@
 #include "calib/calibration.hpp"
 #include "config/content_chain.hpp"
 #include "ipc/base/result.hpp"
-#include "ipc/shm/segment.hpp"
+#include "ipc/shm/open_ring.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 
@@ -151,7 +151,7 @@ struct Opening {
   /// Of the rig. Outlives the source; null: that of calib::reference_rig().
   const calib::Calibration* calibration = nullptr;
   /// Gives the ring of a stream of the rig ("guest.left"). Empty: there is no rig.
-  std::function<Result<ipc::Segment>(std::string_view stream)> ring{};
+  ipc::OpenRing ring{};
   std::string sound = "default";  ///< ALSA's name of the device that is heard
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderer/content/chart_raster.hpp"
 #include "renderer/draw/cpu/nearest_pixel.hpp"
 
 namespace handcast::content {
@@ -11,45 +12,21 @@ namespace {
 
 constexpr int kWrist = 1;
 
-double cross_of(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-/// Calls `take(x, y, parts)` for each texel whose centre lies in a triangle of the texture.
-template <class Take>
-void for_each_in(const std::array<glm::dvec2, 3>& at, int width, int height, const Take& take) {
-  const double area = cross_of(at[1] - at[0], at[2] - at[0]);
-  if (area == 0) return;
-  const glm::dvec2 low = glm::min(at[0], glm::min(at[1], at[2])),
-                   high = glm::max(at[0], glm::max(at[1], at[2]));
-  const int x0 = std::max(0, static_cast<int>(std::ceil(low.x))),
-            x1 = std::min(width - 1, static_cast<int>(std::floor(high.x))),
-            y0 = std::max(0, static_cast<int>(std::ceil(low.y))),
-            y1 = std::min(height - 1, static_cast<int>(std::floor(high.y)));
-  constexpr double kSlack = 1e-9;  // a texel on a shared edge must not be missed
-  for (int y = y0; y <= y1; ++y)
-    for (int x = x0; x <= x1; ++x) {
-      const glm::dvec2 p(x, y);
-      const double a = cross_of(at[2] - at[1], p - at[1]) / area,
-                   b = cross_of(at[0] - at[2], p - at[2]) / area, c = 1 - a - b;
-      if (a < -kSlack || b < -kSlack || c < -kSlack) continue;
-      take(x, y, std::array{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)});
-    }
-}
-
 }  // namespace
 
 SurfaceMap::SurfaceMap(const renderer::HandMesh& hand, int width, int height) {
   renderer::Image<SurfaceTexel> all(width, height);
   renderer::Image<std::uint8_t> on(width, height), off(width, height, 1);
-  const glm::dvec2 size(width, height);
-  for (const auto& triangle : hand.triangles) {
-    std::array<glm::dvec2, 3> at;  // whole numbers at the centres of texels
-    for (std::size_t k = 0; k < 3; ++k) at[k] = glm::dvec2(hand.uv[triangle[k]]) * size - 0.5;
-    for_each_in(at, width, height, [&](int x, int y, const std::array<float, 3>& parts) {
-      all.at(x, y) = {static_cast<std::uint32_t>(y * width + x), triangle, parts};
-      on.at(x, y) = 1;
-      off.at(x, y) = 0;
-    });
-  }
+  for (const auto& triangle : hand.triangles)
+    renderer::for_each_texel(
+        hand, triangle, width, height, [&](int x, int y, const std::array<double, 3>& parts) {
+          all.at(x, y) = {static_cast<std::uint32_t>(y * width + x),
+                          triangle,
+                          {static_cast<float>(parts[0]), static_cast<float>(parts[1]),
+                           static_cast<float>(parts[2])}};
+          on.at(x, y) = 1;
+          off.at(x, y) = 0;
+        });
   for (std::size_t i = 0; i < on.pixels().size(); ++i) {
     if (on.pixels()[i])
       texels_.push_back(all.pixels()[i]);
@@ -76,7 +53,7 @@ std::shared_ptr<const SurfaceMap> surface_map_of(const renderer::HandMesh& hand,
     int width, height;
     std::shared_ptr<const SurfaceMap> map;
   };
-  constexpr std::size_t kKept = 4;  // two hands, while the size changes
+  constexpr std::size_t kKept = 4;  // two hands, whole and as large as what moves (HandView)
   static std::vector<Made> all;
   const auto found = std::ranges::find_if(all, [&](const Made& made) {
     return made.width == width && made.height == height && made.uv == hand.uv &&

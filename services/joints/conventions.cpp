@@ -14,6 +14,8 @@ std::string_view words_of(Place place) {
       return "its joints are those of handcast's hand model, its tips on the skin";
     case Place::as_recorded:
       return "its joints are those of the recording";
+    case Place::as_sent:
+      return "its joints are those that a program sends";
     case Place::unknown:
       break;
   }
@@ -28,6 +30,8 @@ std::string_view words_of(Radii radii) {
       return "the flesh has the widths of the model";
     case Radii::as_recorded:
       return "the flesh is as recorded";
+    case Radii::as_sent:
+      return "the flesh is as sent";
     case Radii::none:
       break;
   }

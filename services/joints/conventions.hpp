@@ -13,10 +13,11 @@ enum class Place {
   bones,        ///< in the middle of the limb, between two bones; a tip is at the end of its bone
   model,        ///< where handcast's own hand model has them; a tip is at the skin
   as_recorded,  ///< as in the recording that is played
+  as_sent,      ///< as a program outside the rig sends them
 };
 
 /// Where the distance from a joint to the skin comes from.
-enum class Radii { none, bone_widths, model, as_recorded };
+enum class Radii { none, bone_widths, model, as_recorded, as_sent };
 
 /// What the joints of a source mean, after they have been converted to the 26 of the rig.
 struct Conventions {

@@ -16,6 +16,8 @@ namespace handcast::landmarks {
 Result<std::unique_ptr<Detector>> open_network_detector(const Opening&);
 Result<std::unique_ptr<Detector>> open_twin(const Opening&);
 Result<std::unique_ptr<Detector>> open_replay(const Opening&);
+Result<std::unique_ptr<Detector>> open_external(const Opening&);
+Result<void> check_external(const Opening&);
 
 static constexpr DetectorBackend kTwin{
     .name = "twin",
@@ -32,6 +34,12 @@ static constexpr DetectorBackend kReplay{.name = "replay",
                                          .open = open_replay,
                                          .reads = {"landmarks.replay"}};
 
+static constexpr DetectorBackend kExternal{
+    .name = "external",
+    .sentence = "A program of your own, in any language, by handcast.h.",
+    .open = open_external,
+    .check = check_external};
+
 /// One row for each landmark model, all with open_network_detector, which opens the model that
 /// landmarks.backend names.
 static std::vector<DetectorBackend> make_table() {
@@ -43,6 +51,7 @@ static std::vector<DetectorBackend> make_table() {
                      .reads = model.reads});
   table.push_back(kTwin);
   table.push_back(kReplay);
+  table.push_back(kExternal);
   return table;
 }
 
@@ -82,9 +91,11 @@ static Result<Opening> opening_of(const config::Rig& rig, const calib::Calibrati
 
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
-                                                std::int64_t epoch_ns, config::Viewpoint at) {
-  const auto with = opening_of(rig, calibration, epoch_ns, at);
+                                                std::int64_t epoch_ns, config::Viewpoint at,
+                                                const ipc::OpenRing& ring) {
+  auto with = opening_of(rig, calibration, epoch_ns, at);
   if (!with) return tl::make_unexpected(with.error());
+  with->ring = ring;
   const auto name = config::name_at(at, "landmarks");
   const auto row = service::find_backend(name, with->settings.backend, detector_backends());
   if (!row) return tl::make_unexpected(row.error());

@@ -11,6 +11,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "ipc/shm/open_ring.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
 #include "services/runtime/backends.hpp"
 
@@ -46,6 +47,7 @@ struct Opening {
   config::Viewpoint at{};      ///< whose images it gets
   config::Landmarks settings;  ///< its section of the rig, with the back end that was chosen
   calib::PlacedCamera camera;  ///< the lens and the place of the camera by the calibration
+  ipc::OpenRing ring{};        ///< gives the rings of the rig; empty if there is none
 };
 
 /// A row of the table of detectors. Its errors name neither the service nor the back end, which
@@ -68,11 +70,13 @@ struct DetectorChoice {
 DetectorChoice choose_detector(const config::Rig& rig,
                                config::Viewpoint at = config::Viewpoint::first);
 
-/// Opens the detector of choose_detector(). `epoch_ns`: the start of the rig. Errors: bad_config.
+/// Opens the detector of choose_detector(). `epoch_ns`: the start of the rig. `ring`: see Opening.
+/// Errors: bad_config.
 Result<std::unique_ptr<Detector>> open_detector(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
                                                 std::int64_t epoch_ns,
-                                                config::Viewpoint at = config::Viewpoint::first);
+                                                config::Viewpoint at = config::Viewpoint::first,
+                                                const ipc::OpenRing& ring = {});
 /// Checks it: see service::Backend::check. Errors: those of open_detector().
 Result<void> check_detector(const config::Rig& rig, const calib::Calibration& calibration,
                             config::Viewpoint at);

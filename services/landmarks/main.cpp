@@ -3,6 +3,7 @@
 
 #include "ipc/base/log.hpp"
 #include "ipc/msg/detector_note.hpp"
+#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/same_calibration.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
@@ -33,7 +34,8 @@ static void run_landmarks(service::Context& context, Viewpoint at) {
   if (!choice.why.empty()) log::warning("{}", choice.why);
   if (service::is_exclusive(choice.backend, landmarks::detector_backends())) context.stand_by();
   const auto detector =
-      must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns(), at));
+      must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns(), at,
+                                    [&](std::string_view stream) { return context.ring(stream); }));
   context.stand_by();
   auto frames = must(context.reader<msg::CameraFrame>(config::name_at(at, "camera.frames")));
   auto poses = context.reader<msg::HandPoses>("pose.hands");
@@ -72,15 +74,16 @@ static void run_landmarks(service::Context& context, Viewpoint at) {
 }
 
 static service::Instance instance_at(Viewpoint at) {
-  return {service::describe_at(
-              at, {.name = "landmarks",
-                   .summary = "Finds the landmarks of the hands in camera images.",
-                   .paced_by = "camera.frames",
-                   .publishes = {"landmarks.hands"},
-                   .subscribes = {"camera.frames", "pose.hands"},
-                   .settings = {"landmarks.fallback"},
-                   .backends = service::describe_rows(landmarks::detector_backends())}),
-          [at](service::Context& context) { run_landmarks(context, at); },
+  auto description = service::describe_at(
+      at, {.name = "landmarks",
+           .summary = "Finds the landmarks of the hands in camera images.",
+           .paced_by = "camera.frames",
+           .publishes = {"landmarks.hands"},
+           .subscribes = {"camera.frames", "pose.hands"},
+           .settings = {"landmarks.fallback"},
+           .backends = service::describe_rows(landmarks::detector_backends())});
+  if (at == Viewpoint::first) description.subscribes.emplace_back(msg::kGuestLandmarks);
+  return {std::move(description), [at](service::Context& context) { run_landmarks(context, at); },
           [at](const config::Rig& rig, const calib::Calibration& calibration) {
             return landmarks::check_detector(rig, calibration, at);
           }};

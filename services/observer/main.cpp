@@ -14,12 +14,8 @@ using namespace handcast;
 using namespace std::chrono_literals;
 using service::must;
 
-static bool has_truth(const config::Rig& rig) {
-  const auto& tracker = rig.pose.backend;
-  const bool is_twins = tracker == "twin" || tracker == "none" ||
-                        (tracker == "stereo" && rig.camera2.backend == "twin");
-  return rig.camera.backend == "twin" && is_twins;
-}
+/// The true hand is the one that the camera sees. Any tracker and detector may have found it.
+static bool has_truth(const config::Rig& rig) { return rig.camera.backend == "twin"; }
 
 /// Writes observer.json to the folder for kept files. Without one the scores are only logged.
 static void save(const observer::Judge& judge, service::Context& context) {
@@ -53,8 +49,8 @@ static void run_observer(service::Context& context) {
   auto projections = must(context.reader<msg::Projection>("projection.frames"));
   if (!has_truth(context.rig()))
     log::warning(
-        "nothing is scored: cameras or tracker do not see the twin's hand, so there is no true "
-        "hand to compare with");
+        "nothing is scored: the camera does not see the twin's hand, so there is no true hand to "
+        "compare with");
 
   const auto period_ns = seconds_to_ns(1 / context.rig().observer.rate_hz);
   std::int64_t score_ns = now_ns(), save_ns = score_ns + to_ns(2s), log_ns = score_ns + to_ns(5s);
@@ -88,7 +84,7 @@ static Result<void> check_observer(const config::Rig& rig, const calib::Calibrat
 /// The true hand comes from the twin's world, if there is one.
 static std::vector<std::string> settings() {
   const auto world = config::kTwinWorldSettings.paths();
-  std::vector<std::string> all{"observer", "camera.backend", "camera2.backend", "pose.backend"};
+  std::vector<std::string> all{"observer", "camera.backend"};
   all.insert(all.end(), world.begin(), world.end());
   return all;
 }

@@ -10,21 +10,22 @@
 namespace handcast::pose {
 
 Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig&, const calib::Calibration&,
-                                              const std::int64_t& epoch_ns);
+                                              const Surroundings&);
 Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig&, const calib::Calibration&,
-                                                const std::int64_t& epoch_ns);
+                                                const Surroundings&);
 Result<std::unique_ptr<PoseSource>> open_none(const config::Rig&, const calib::Calibration&,
-                                              const std::int64_t& epoch_ns);
+                                              const Surroundings&);
 Result<std::unique_ptr<PoseSource>> open_openxr(const config::Rig&, const calib::Calibration&,
-                                                const std::int64_t& epoch_ns);
-Result<void> check_openxr(const config::Rig&, const calib::Calibration&,
-                          const std::int64_t& epoch_ns);
+                                                const Surroundings&);
+Result<void> check_openxr(const config::Rig&, const calib::Calibration&, const Surroundings&);
 Result<std::unique_ptr<PoseSource>> open_leapc(const config::Rig&, const calib::Calibration&,
-                                               const std::int64_t& epoch_ns);
-Result<void> check_leapc(const config::Rig&, const calib::Calibration&,
-                         const std::int64_t& epoch_ns);
+                                               const Surroundings&);
+Result<void> check_leapc(const config::Rig&, const calib::Calibration&, const Surroundings&);
+Result<std::unique_ptr<PoseSource>> open_external(const config::Rig&, const calib::Calibration&,
+                                                  const Surroundings&);
+Result<void> check_external(const config::Rig&, const calib::Calibration&, const Surroundings&);
 Result<std::unique_ptr<PoseSource>> open_stereo(const config::Rig&, const calib::Calibration&,
-                                                const std::int64_t& epoch_ns);
+                                                const Surroundings&);
 
 static constexpr std::array kBackends{
     PoseBackend{.name = "twin",
@@ -40,6 +41,10 @@ static constexpr std::array kBackends{
                 .open = open_leapc,
                 .reads = {"pose.leapc"},
                 .check = check_leapc},
+    PoseBackend{.name = "external",
+                .sentence = "A program of your own, in any language, by handcast.h.",
+                .open = open_external,
+                .check = check_external},
     PoseBackend{.name = "none",
                 .sentence = "No tracker: lifts the landmarks of the camera image to poses.",
                 .open = open_none,
@@ -66,8 +71,8 @@ std::string title_of(const std::string& name) { return fmt::format("pose '{}'", 
 
 Result<std::unique_ptr<WatchedSource>> open_watched(const std::string& name, const config::Rig& rig,
                                                     const calib::Calibration& calibration,
-                                                    std::int64_t epoch_ns) {
-  auto source = service::open_backend("pose", name, pose_backends(), rig, calibration, epoch_ns);
+                                                    const Surroundings& around) {
+  auto source = service::open_backend("pose", name, pose_backends(), rig, calibration, around);
   if (!source) return tl::make_unexpected(source.error());
   return std::make_unique<WatchedSource>(title_of(name), std::move(*source));
 }
@@ -84,10 +89,11 @@ Result<void> check_second(const config::Pose& settings) {
 
 Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
                                                      const calib::Calibration& calibration,
-                                                     std::int64_t epoch_ns) {
+                                                     std::int64_t epoch_ns,
+                                                     const ipc::OpenRing& ring) {
   const auto opener = [&](const std::string& name) {
-    return [name, rig, calibration, epoch_ns] {
-      return open_watched(name, rig, calibration, epoch_ns);
+    return [name, rig, calibration, around = Surroundings{epoch_ns, ring}] {
+      return open_watched(name, rig, calibration, around);
     };
   };
   if (rig.pose.second.empty()) return opener(rig.pose.backend)();
@@ -104,7 +110,8 @@ bool is_exclusive(const config::Pose& settings) {
 
 Result<void> check_pose_sources(const config::Rig& rig, const calib::Calibration& calibration) {
   const auto check = [&](const std::string& name) {
-    return service::check_backend("pose", name, pose_backends(), rig, calibration, now_ns());
+    return service::check_backend("pose", name, pose_backends(), rig, calibration,
+                                  Surroundings{now_ns()});
   };
   if (auto first = check(rig.pose.backend); !first || rig.pose.second.empty()) return first;
   if (auto differs = check_second(rig.pose); !differs) return differs;

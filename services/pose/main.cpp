@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/same_calibration.hpp"
 #include "ipc/msg/tracker_faults.hpp"
 #include "ipc/ring/reader.hpp"
@@ -104,7 +105,8 @@ static void watch_calibration(const msg::HandPoses& poses, pose::LandmarkFeed& l
 static void run_pose(service::Context& context) {
   if (pose::is_exclusive(context.rig().pose)) context.stand_by();
   const auto source =
-      must(pose::open_pose_source(context.rig(), context.calibration(), context.epoch_ns()));
+      must(pose::open_pose_source(context.rig(), context.calibration(), context.epoch_ns(),
+                                  [&](std::string_view stream) { return context.ring(stream); }));
   context.stand_by();
   pose::LandmarkFeed landmarks({context.reader<msg::Landmarks>("landmarks.hands"),
                                 context.reader<msg::Landmarks>("landmarks2.hands")},
@@ -149,12 +151,13 @@ static Result<void> check_pose(const config::Rig& rig, const calib::Calibration&
 }
 
 int main(int argc, char** argv) {
-  return service::run({.name = "pose",
-                       .summary = "Delivers the hand poses of the tracker.",
-                       .paced_by = "its device",
-                       .publishes = {"pose.hands"},
-                       .subscribes = {"landmarks.hands", "landmarks2.hands"},
-                       .settings = {"pose.second", "pose.handover", "pose.drift"},
-                       .backends = service::describe_rows(pose::pose_backends())},
-                      argc, argv, run_pose, check_pose);
+  return service::run(
+      {.name = "pose",
+       .summary = "Delivers the hand poses of the tracker.",
+       .paced_by = "its device",
+       .publishes = {"pose.hands"},
+       .subscribes = {"landmarks.hands", "landmarks2.hands", std::string(msg::kGuestPoses)},
+       .settings = {"pose.second", "pose.handover", "pose.drift"},
+       .backends = service::describe_rows(pose::pose_backends())},
+      argc, argv, run_pose, check_pose);
 }

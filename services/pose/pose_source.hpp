@@ -11,6 +11,7 @@
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/tracker_faults.hpp"
+#include "ipc/shm/open_ring.hpp"
 #include "services/joints/conventions.hpp"
 #include "services/runtime/backends.hpp"
 
@@ -53,9 +54,14 @@ class PoseSource {
   virtual msg::TrackerFaults take_faults() { return {}; }
 };
 
-/// A back end, opened with the rig, its calibration, and the epoch of the rig (CLOCK_MONOTONIC,
-/// ns).
-using PoseBackend = service::Backend<PoseSource, config::Rig, calib::Calibration, std::int64_t>;
+/// The rig that is up, as far as back ends need it.
+struct Surroundings {
+  std::int64_t epoch_ns = 0;  ///< time zero of the rig, CLOCK_MONOTONIC
+  ipc::OpenRing ring{};       ///< gives its rings; empty if there is no rig
+};
+
+/// A back end, opened with the rig, its calibration and its surroundings.
+using PoseBackend = service::Backend<PoseSource, config::Rig, calib::Calibration, Surroundings>;
 
 /// All back ends of this build.
 std::span<const PoseBackend> pose_backends();
@@ -64,7 +70,8 @@ std::span<const PoseBackend> pose_backends();
 /// Errors: bad_config (unknown back end, or its settings are wrong), and those of the back end.
 Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
                                                      const calib::Calibration& calibration,
-                                                     std::int64_t epoch_ns);
+                                                     std::int64_t epoch_ns,
+                                                     const ipc::OpenRing& ring = {});
 /// Whether only one process at a time can have the sources of this rig open.
 bool is_exclusive(const config::Pose& settings);
 /// Opens the sources of a rig and closes them again, except exclusive ones. Errors: as

@@ -94,20 +94,20 @@ Result<std::unique_ptr<PoseSource>> open_recorded(const config::Replay& settings
 }  // namespace
 
 Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const calib::Calibration&,
-                                                const std::int64_t& epoch_ns) {
+                                                const Surroundings& around) {
   const auto& settings = rig.pose.replay;
   if (settings.directory.empty())
     return fail(Errc::bad_config, "pose 'replay': no folder is given; set pose.replay.directory");
   if (auto there = recording::check_folder(settings.directory); !there)
     return fail_in("pose 'replay'", there.error());
-  if (recording::is_recording(settings.directory)) return open_recorded(settings, epoch_ns);
+  if (recording::is_recording(settings.directory)) return open_recorded(settings, around.epoch_ns);
   auto recording = recording::read_recording(settings.directory);
   if (!recording) return fail_in("pose 'replay'", recording.error());
   const auto stamps_ns = recording::read_all_stamps_ns(settings.directory);
   if (!stamps_ns) return fail_in("pose 'replay'", stamps_ns.error());
   auto times_ns = recording->time_ns;
   for (auto& time_ns : times_ns) time_ns += recording->first_ns;
-  auto loop = timing::Loop::make(std::move(times_ns), timing::Lap::of(*stamps_ns), epoch_ns,
+  auto loop = timing::Loop::make(std::move(times_ns), timing::Lap::of(*stamps_ns), around.epoch_ns,
                                  settings.loop, timing::kLoneStep_ns);
   if (!loop) return fail_in("pose 'replay': timestamps.npy", loop.error());
   return std::make_unique<ReplayPose>(std::move(*recording), std::move(*loop));

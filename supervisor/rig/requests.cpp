@@ -13,7 +13,7 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
-#include "ipc/msg/guest_picture.hpp"
+#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "supervisor/spec/fingerprint.hpp"
@@ -165,10 +165,8 @@ void give_status(LiveRig& rig, const Reply& reply) {
 /// Only the rings that no service writes to may be changed by a tool; the others not even by
 /// accident.
 int access_to(std::string_view stream) {
-  const bool is_for_guests =
-      std::ranges::find(msg::kGuestPictures, stream) != msg::kGuestPictures.end();
   const bool is_for_tools = stream == msg::kTestPictures || stream == msg::kLiveSettings;
-  return is_for_guests || is_for_tools ? O_RDWR : O_RDONLY;
+  return msg::is_for_guests(stream) || is_for_tools ? O_RDWR : O_RDONLY;
 }
 
 void give_rings(const LiveRig& rig, const Reply& reply) {

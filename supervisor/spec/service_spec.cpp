@@ -6,6 +6,7 @@
 #include "ipc/msg/content_picture.hpp"
 #include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
+#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/msg/largest_images.hpp"
@@ -27,6 +28,8 @@ constexpr int kPictureSlots = 4;
 
 /// The newest, the one that is written, and one to write meanwhile: its reader takes no lease.
 constexpr int kGuestSlots = 3;
+/// A program that sends 2000 samples a second overwrites none within 8 ms.
+constexpr int kGuestHistory = 16;
 
 constexpr bool kNewestOnly = false, kWithHistory = true;
 
@@ -57,6 +60,11 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::LiveSettings>(std::string(msg::kLiveSettings), 8, kNewestOnly),
       guest_ring("guest.left"),
       guest_ring("guest.right"),
+      RingSpec::of<msg::CameraFrame>(
+          std::string(msg::kGuestImages), kPictureSlots, kNewestOnly,
+          msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
+      RingSpec::of<msg::HandPoses>(std::string(msg::kGuestPoses), kGuestHistory, kWithHistory),
+      RingSpec::of<msg::Landmarks>(std::string(msg::kGuestLandmarks), kGuestHistory, kWithHistory),
   };
 }
 

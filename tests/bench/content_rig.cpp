@@ -20,12 +20,12 @@
 #include "ipc/msg/content_state.hpp"
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/projection.hpp"
-#include "ipc/msg/stage_mark.hpp"
 #include "ipc/ring/writer.hpp"
 #include "tests/bench/control_rig.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/rings_transports.hpp"
+#include "tests/bench/watched_frames.hpp"
 
 namespace handcast::bench {
 namespace {
@@ -48,33 +48,6 @@ client::Stream<T> stream_of(std::string_view name) {
   auto stream = client::open_stream<T>("twin", name);
   if (!stream) give_up(stream.error().what);
   return std::move(*stream);
-}
-
-/// The frames of a rig for some seconds.
-struct Frames {
-  std::vector<double> frame_us;  ///< Stage::frame
-  int missed = 0;                ///< refreshes between two frames without one
-};
-
-Frames watch_frames(double seconds) {
-  auto marks = stream_of<msg::StageMarks>("marks.projector");
-  Frames frames;
-  std::int64_t last_ns = 0;
-  for (const auto until = Deadline::in(std::chrono::nanoseconds(seconds_to_ns(seconds)));
-       !until.passed();) {
-    const auto sample = marks.next(Deadline::in(100ms));
-    if (!sample) continue;
-    const auto& message = **sample;
-    for (std::uint32_t i = 0; i < message.count; ++i) {
-      const auto& mark = message.marks[i];
-      if (mark.stage != msg::Stage::frame) continue;
-      frames.frame_us.push_back(ns_to_us(mark.end_ns - mark.begin_ns));
-      const double periods = ns_to_seconds(mark.begin_ns - last_ns) * kRefresh_hz;
-      if (last_ns != 0 && periods > 1.5) frames.missed += static_cast<int>(periods - 0.5);
-      last_ns = mark.begin_ns;
-    }
-  }
-  return frames;
 }
 
 config::LiveBoard board_of_twin() {
@@ -163,35 +136,58 @@ Kills kill_content(const TwinRig& rig, int kills) {
   return result;
 }
 
-/// A still and a moving content in turns of one rig, so that whatever else the machine does meets
-/// both alike.
-void measure_frames(const RigFolder& folder, int turns, std::vector<Goal>& goals) {
-  const TwinRig rig(folder, settings_with("builtin:atlas"));
+/// The projector's frames with two contents in turns of one rig, so that whatever else the machine
+/// does meets both alike.
+struct Compared {
+  std::vector<double> first_us, second_us;  ///< p50 of each turn of 1 s
+  double missed_more_percent = 0;           ///< refreshes with the second, of all
+};
+
+Compared compare(const RigFolder& folder, int turns, const std::string& first,
+                 const std::string& second) {
+  const TwinRig rig(folder, settings_with(first));
   auto board = board_of_twin();
-  std::vector<double> still_us, moving_us, ratio;
+  Compared compared;
   int missed = 0, frames = 0;
+  const auto watch = [&](const std::string& content) {
+    change_ms(board, content);
+    ::usleep(350'000);  // the transition
+    return watch_frames(1, kRefresh_hz);
+  };
   for (int turn = 0; turn < turns; ++turn) {
-    const auto watch = [&](const char* content) {
-      change_ms(board, content);
-      ::usleep(350'000);  // the transition
-      return watch_frames(1);
-    };
-    const auto still = watch("builtin:atlas"), moving = watch("waves");
-    still_us.push_back(median(still.frame_us));
-    moving_us.push_back(median(moving.frame_us));
-    ratio.push_back(moving_us.back() / still_us.back());
-    missed += moving.missed - still.missed;
-    frames += static_cast<int>(moving.frame_us.size());
+    const auto with_first = watch(first), with_second = watch(second);
+    compared.first_us.push_back(median(with_first.frame_us));
+    compared.second_us.push_back(median(with_second.frame_us));
+    missed += with_second.missed - with_first.missed;
+    frames += static_cast<int>(with_second.frame_us.size());
   }
-  fmt::print(
-      "the projector's frame, p50 of {} turns of 1 s: {:.0f} us with a still picture, {:.0f} "
-      "us with a shader of 640x400 at 60 Hz; half of the turns within {:+.1f} .. {:+.1f} "
-      "%\n",
-      turns, median(still_us), median(moving_us), 100 * (percentile(ratio, 0.25) - 1),
-      100 * (percentile(ratio, 0.75) - 1));
-  goals.push_back({"frame with a moving content, longer by", 100 * (median(ratio) - 1), 5, "%"});
-  goals.push_back({"missed refreshes more than with a still one, of all",
-                   100. * missed / std::max(frames, 1), 0, "%"});
+  compared.missed_more_percent = 100. * missed / std::max(frames, 1);
+  return compared;
+}
+
+void measure_frames(const RigFolder& folder, int turns, std::vector<Goal>& goals) {
+  const auto moving = compare(folder, turns, "builtin:atlas", "waves"),
+             lit = compare(folder, turns, "builtin:atlas", "builtin:atlas | light kind=orbit");
+  const auto ratios = [](const Compared& compared) {
+    std::vector<double> all;
+    for (std::size_t turn = 0; turn < compared.first_us.size(); ++turn)
+      all.push_back(compared.second_us[turn] / compared.first_us[turn]);
+    return all;
+  };
+  for (const auto& [name, compared] :
+       {std::pair("a shader of 640x400 at 60 Hz", &moving), {"its light moving at 60 Hz", &lit}})
+    fmt::print(
+        "the projector's frame, p50 of {} turns of 1 s: {:.0f} us with a still picture, {:.0f} us "
+        "with {}; half of the turns within {:+.1f} .. {:+.1f} %\n",
+        turns, median(compared->first_us), median(compared->second_us), name,
+        100 * (percentile(ratios(*compared), 0.25) - 1),
+        100 * (percentile(ratios(*compared), 0.75) - 1));
+  goals.push_back(
+      {"frame with a moving content, longer by", 100 * (median(ratios(moving)) - 1), 5, "%"});
+  goals.push_back(
+      {"missed refreshes more than with a still one, of all", moving.missed_more_percent, 0, "%"});
+  goals.push_back({"frame with moving light, longer by",
+                   1e-3 * (median(lit.second_us) - median(lit.first_us)), 0.15, "ms"});
 }
 
 int run(int turns, const char* goals_file) {

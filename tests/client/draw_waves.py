@@ -6,13 +6,13 @@ usage: PYTHONPATH=PREFIX/share/handcast/python draw_waves.py PICTURES
 """
 import sys
 
-import handcast_content
+import handcast
 
 WIDTH, HEIGHT = 160, 100
 
 
 def main():
-    with handcast_content.Content("right", WIDTH, HEIGHT, straight=True, lasts_s=1) as content:
+    with handcast.Content("right", WIDTH, HEIGHT, straight=True, lasts_s=1) as content:
         for number in range(int(sys.argv[1])):
             content.wait(1)
             hands = content.hands()
@@ -22,10 +22,10 @@ def main():
             for y in range(HEIGHT):
                 rows += bytes((255, 128, 0, 255) if (y + shift) // 10 % 2 else (0, 64, 255, 128)) * WIDTH
             pixels = content.begin()
-            if handcast_content.numpy is None:
+            if handcast.numpy is None:
                 pixels[:] = rows
             else:
-                pixels[:] = handcast_content.numpy.frombuffer(rows, "u1").reshape(HEIGHT, WIDTH, 4)
+                pixels[:] = handcast.numpy.frombuffer(rows, "u1").reshape(HEIGHT, WIDTH, 4)
             content.publish(hands.time_ns if hands else 0)
             print(f"picture {number}: {'there' if places_m is not None else 'no hand'}", flush=True)
 
@@ -33,5 +33,5 @@ def main():
 if __name__ == "__main__":
     try:
         main()
-    except handcast_content.HandcastError as error:
+    except handcast.HandcastError as error:
         sys.exit(f"draw_waves: {error}")

@@ -34,7 +34,13 @@ OPTIONAL = {"handcast-dlp", "handcast-exporter", "handcast-preview", "handcast-s
 LINE = re.compile(r"frame (\d+) for ([\d.]+) ms:(?: image ([\d.]+) ms)?"
                   r"(?: pose ([\d.]+) ms)?(?: landmarks ([\d.]+) ms)? old")
 
+PYTHON = "/usr/bin/python3"  # scripts/setup --tests installs numpy and OpenCV for it
+
 build = scratch = tree = None
+
+
+def has_modules(*names):
+    return subprocess.run([PYTHON, "-c", f"import {', '.join(names)}"], capture_output=True).returncode == 0
 
 
 def setUpModule():
@@ -192,17 +198,23 @@ class AProgramOfSomebodyElse(unittest.TestCase):
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGTERM)
                 process.wait(PATIENCE_S)
-            process.stdout.close()
+            for pipe in filter(None, (process.stdin, process.stdout)):
+                pipe.close()
 
-    def start(self, *command, **env):
+    def start(self, *command, stdin=None, **env):
         process = subprocess.Popen([str(word) for word in command], cwd=scratch, env=environment(**env),
-                                   text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                   stdin=stdin, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                    start_new_session=True)
         self.processes.append(process)
         return process
 
-    def start_rig(self):
-        slow = ["camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false"]
+    def start_python(self, name, *arguments, **more):
+        """With the Python that has numpy, if there is one."""
+        return self.start(PYTHON, SOURCE / name, *arguments, **more, LD_LIBRARY_PATH=str(tree / "lib"),
+                          PYTHONPATH=str(tree / "share/handcast/python"))
+
+    def start_rig(self, *settings):
+        slow = ["camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false", *settings]
         rig = self.start(tree / "bin/handcast", "up", rig_file(),
                          *(word for setting in slow for word in ("--set", setting)))
         for line in rig.stdout:
@@ -255,6 +267,36 @@ class AProgramOfSomebodyElse(unittest.TestCase):
         handcast("down")
         self.assertIn("no longer up", again.stdout.read())
         self.assertEqual(again.wait(PATIENCE_S), 1)
+
+    @unittest.skipUnless(has_modules("numpy"), "numpy is not installed")
+    def test_is_the_tracker_of_a_rig(self):
+        self.start_rig()
+        sent = self.start_python("hands_to_json.py", "1").stdout.read()
+        handcast("down")
+        points = json.loads(sent)["left"]
+        self.assertEqual(len(points), 26)
+        self.start_rig("pose.backend=external")
+        tracker = self.start_python("json_to_hands.py", stdin=subprocess.PIPE)
+        reader = self.start_python("hands_to_json.py", "20")
+        while reader.poll() is None:
+            points[0][0] += 1e-5
+            tracker.stdin.write(json.dumps({"left": points}) + "\n")
+            tracker.stdin.flush()
+            time.sleep(0.01)
+        seen = [json.loads(line) for line in reader.stdout.read().splitlines()]
+        self.assertAlmostEqual(seen[-1]["left"][10][1], points[10][1], places=5)
+        tracker.stdin.write(json.dumps({"time_ns": 1, "left": points}) + "\n")
+        tracker.stdin.close()
+        self.assertIn("its time is", tracker.stdout.read())
+
+    @unittest.skipUnless(has_modules("numpy", "cv2"), "OpenCV for Python is not installed")
+    def test_is_the_detector_of_a_rig(self):
+        self.start_rig("landmarks.backend=external")
+        detector = self.start_python("detect_hands.py", tree / "share/handcast/landmarks/handcast.onnx", "40")
+        self.assertIn("image 39: hand", detector.stdout.read())
+        rings = {row["stream"]: row for row in json.loads(handcast("top", "--once", "--json"))["rings"]}
+        self.assertEqual(rings["guest.landmarks"]["published"], 40)
+        self.assertGreater(rings["landmarks.hands"]["published"], 20)
 
     def test_reads_frames_until_the_rig_is_down(self):
         began_ms = moment_ms()

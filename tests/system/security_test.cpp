@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "ipc/control/control_client.hpp"
-#include "ipc/msg/guest_picture.hpp"
+#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "tests/system/running_rig.hpp"
@@ -38,9 +38,8 @@ class Security : public SystemTest {
     EXPECT_TRUE(answer);
     std::vector<UniqueFd> given;
     for (std::size_t i = 0; answer && i < answer->descriptors.size(); ++i)
-      if (const auto& name = answer->object["rings"][i];
-          name != msg::kTestPictures && name != msg::kLiveSettings &&
-          name != msg::kGuestPictures[0] && name != msg::kGuestPictures[1])
+      if (const auto name = answer->object["rings"][i].get<std::string>();
+          name != msg::kTestPictures && name != msg::kLiveSettings && !msg::is_for_guests(name))
         given.push_back(std::move(answer->descriptors[i]));
     return given;
   }

@@ -49,7 +49,7 @@ Error error_of(const std::string& host, CURLcode code) {
   }
 }
 
-void set_up(CURL* curl, const Post& request, Reply& reply) {
+void set_up(CURL* curl, const Request& request, Reply& reply) {
   curl_easy_setopt(curl, CURLOPT_URL, request.url.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
@@ -57,8 +57,11 @@ void set_up(CURL* curl, const Post& request, Reply& reply) {
   curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(request.patience.count()));
   curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(request.patience.count()));
   curl_easy_setopt(curl, CURLOPT_MAXFILESIZE_LARGE, static_cast<curl_off_t>(request.most_bytes));
-  curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE_LARGE, static_cast<curl_off_t>(request.json.size()));
-  curl_easy_setopt(curl, CURLOPT_POSTFIELDS, request.json.data());
+  if (!request.body.empty()) {
+    curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE_LARGE,
+                     static_cast<curl_off_t>(request.body.size()));
+    curl_easy_setopt(curl, CURLOPT_POSTFIELDS, request.body.data());
+  }
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, &reply);
 }
@@ -91,13 +94,13 @@ std::string host_of(const std::string& url) {
   return host.substr(host.rfind('@') + 1);
 }
 
-Result<std::string> post(const Post& request, const std::stop_token& stop) {
+Result<std::string> fetch(const Request& request, const std::stop_token& stop) {
   static const auto started = curl_global_init(CURL_GLOBAL_DEFAULT);
   const std::unique_ptr<CURL, decltype(&curl_easy_cleanup)> curl(
       started == CURLE_OK ? curl_easy_init() : nullptr, curl_easy_cleanup);
   if (!curl) return fail(Errc::unavailable, "the library curl does not start");
   const std::string host = host_of(request.url);
-  curl_slist* lines = curl_slist_append(nullptr, "Content-Type: application/json");
+  curl_slist* lines = curl_slist_append(nullptr, ("Content-Type: " + request.type).c_str());
   lines = curl_slist_append(lines, "Expect:");
   if (!request.key.empty())
     lines = curl_slist_append(lines, ("Authorization: Bearer " + request.key).c_str());

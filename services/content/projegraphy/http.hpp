@@ -10,10 +10,11 @@
 namespace handcast::projegraphy {
 
 /// A request to a server.
-struct Post {
-  std::string url;   ///< http or https
-  std::string json;  ///< the body
-  std::string key;   ///< for "Authorization: Bearer"; empty: none. It is in no sentence.
+struct Request {
+  std::string url;                        ///< http or https
+  std::string body;                       ///< of a POST; empty: a GET
+  std::string type = "application/json";  ///< of the body
+  std::string key;  ///< for "Authorization: Bearer"; empty: none. It is in no sentence.
   std::chrono::milliseconds patience{8000};  ///< for all of it
   std::size_t most_bytes = 1 << 20;          ///< of the reply
 };
@@ -22,7 +23,7 @@ struct Post {
 /// Errors: timeout; unavailable (no server, or it is busy: 408, 429, 5xx), which may go away;
 /// bad_config (the address, 401, 403, 404) and bad_data (another status, a reply that is too
 /// large), which do not; sentences name the host only.
-Result<std::string> post(const Post& request, const std::stop_token& stop);
+Result<std::string> fetch(const Request& request, const std::stop_token& stop);
 
 /// The host of an address, for sentences: without names, keys and paths. "" if it has none.
 std::string host_of(const std::string& url);

@@ -309,4 +309,21 @@ renderer::Texture painted(const Silhouette& silhouette, const Recognised& recogn
   return canvas.texture();
 }
 
+renderer::Texture calm_picture() {
+  const glm::vec3 night = colour_of(0x12355b), sea = colour_of(0x1f7a7d),
+                  dusk = colour_of(0x7a5c99);
+  renderer::Texture picture(kSide, kSide);
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x) {
+      const glm::vec2 at = glm::vec2(x, y) * (2 * std::numbers::pi_v<float> / kSide);
+      const float tide = 0.5f + 0.5f * std::sin(at.y + 0.6f * std::sin(1.3f * at.x)),
+                  swell = 0.5f + 0.5f * std::sin(3 * at.y + std::sin(2 * at.x + 1));
+      const glm::vec3 colour = 255.f * glm::mix(glm::mix(night, sea, tide), dusk, 0.5f * swell);
+      picture.at(x, y) = 0xff000000u | static_cast<std::uint32_t>(colour.b) << 16 |
+                         static_cast<std::uint32_t>(colour.g) << 8 |
+                         static_cast<std::uint32_t>(colour.r);
+    }
+  return picture;
+}
+
 }  // namespace handcast::projegraphy

@@ -131,6 +131,8 @@ class ProjegraphySource final : public SettableSource {
                              Parameter::Kind::text),
              plain_parameter("painter", "Address of a server that paints it",
                              Parameter::Kind::text),
+             plain_parameter("workflow", "File with what it does, if it is ComfyUI",
+                             Parameter::Kind::text),
              plain_parameter("model", "Model of the recogniser", Parameter::Kind::text),
              plain_parameter("key", "File with the address of the recogniser and its key",
                              Parameter::Kind::text),
@@ -157,6 +159,12 @@ class ProjegraphySource final : public SettableSource {
       auto key = projegraphy::read_key(std::string(value));
       if (!key) return tl::make_unexpected(key.error());
       key_ = std::move(*key);
+    }
+    if (name == "workflow") {
+      auto workflow =
+          value.empty() ? Result<std::string>("") : projegraphy::read_workflow(std::string(value));
+      if (!workflow) return tl::make_unexpected(workflow.error());
+      workflow_ = std::move(*workflow);
     }
     return SettableSource::set(name, value);
   }
@@ -195,6 +203,7 @@ class ProjegraphySource final : public SettableSource {
     projegraphy::Servers servers;
     servers.recogniser = text("recogniser");
     servers.painter = text("painter");
+    servers.workflow = workflow_;
     servers.model = text("model").empty() ? "gpt-4o" : text("model");
     if (!text("style").empty()) servers.style = text("style");
     servers.key = key_.for_server(servers.recogniser);
@@ -273,6 +282,7 @@ class ProjegraphySource final : public SettableSource {
   std::shared_ptr<Studio> studio_;
   projegraphy::ServerKey key_ =
       projegraphy::read_key("").value_or(projegraphy::ServerKey());  ///< in no sentence
+  std::string workflow_;                                             ///< of the painter
   SkinPrint print_;  ///< of the thread that bakes, while there is one
   Stillness stillness_;
   std::optional<Silhouette> last_;        ///< that was looked at

@@ -162,8 +162,9 @@ std::optional<Recognised> Recogniser::Shapes::best(const Silhouette& silhouette,
   }
   const auto& found = *std::ranges::min_element(fits, {}, &Fit::distance);
   Recognised result;
-  result.animal = static_cast<int>(found.prototype->animal);
   result.distance = found.distance;
+  if (only >= 0 || found.distance <= animals()[found.prototype->animal].farthest)
+    result.animal = static_cast<int>(found.prototype->animal);
   result.is_mirrored = found.placement.is_mirrored;
   result.unit_px = found.placement.scale * seen.unit_px();
   for (const auto& fit : fits)

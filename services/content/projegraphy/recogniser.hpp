@@ -21,7 +21,7 @@ struct Placement {
 
 /// What a silhouette resembles.
 struct Recognised {
-  int animal = -1;           ///< index into animals()
+  int animal = -1;           ///< index into animals(); -1: none of them is near enough
   float distance = 1;        ///< 0: the same shape
   float runner_up = 1;       ///< the distance of the next animal
   bool is_mirrored = false;  ///< relative to the hands of the table
@@ -43,7 +43,7 @@ class Recogniser {
   Recogniser(Recogniser&&) noexcept;
   ~Recogniser();
 
-  /// What a silhouette resembles most; empty without a silhouette.
+  /// What a silhouette resembles most, or none of the animals; empty without a silhouette.
   std::optional<Recognised> recognise(const Silhouette& silhouette) const;
   /// The place of this animal on a silhouette.
   std::optional<Recognised> place(const Silhouette& silhouette, int animal) const;

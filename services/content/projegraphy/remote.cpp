@@ -2,23 +2,19 @@
 #include "services/content/projegraphy/remote.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <condition_variable>
 #include <cstdlib>
-#include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/join.hpp"
-#include "ipc/base/unique_fd.hpp"
-#include "renderer/media/picture.hpp"
 #include "services/content/projegraphy/animals.hpp"
+#include "services/content/projegraphy/exchange.hpp"
 #include "services/content/projegraphy/painter.hpp"
 
 namespace handcast::projegraphy {
@@ -27,9 +23,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::int64_t kHour_ns = 3'600'000'000'000, kRest_ns = 20'000'000'000;
-constexpr std::size_t kMostAnswer = 64 << 10, kMostPainting = 24 << 20;
+constexpr std::size_t kMostAnswer = 64 << 10;
 constexpr std::size_t kLongestName = 24;
-constexpr std::uint32_t kLargestPainting_px = 2048;
+constexpr std::string_view kNone = "none";
 constexpr std::string_view kDigits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
@@ -64,25 +60,15 @@ std::string from_base64(std::string_view text) {
   return bytes;
 }
 
-std::string without_slash(std::string url) {
-  while (url.ends_with('/')) url.pop_back();
-  return url;
-}
-
-/// White on black.
-Result<std::string> mask_png(const Silhouette& silhouette) {
-  auto mask = silhouette.mask;
-  for (auto& level : mask.pixels()) level = level ? 255 : 0;
-  return renderer::png_of(std::as_const(mask).view());
-}
-
 json question_of(const Servers& servers, const std::string& png) {
   std::vector<std::string_view> names;
   for (const auto& animal : animals()) names.push_back(animal.name);
   const auto text = fmt::format(
       "The picture is the shadow of one or two hands. Which of these animals does it resemble "
-      "most: {}? Answer with JSON alone: {{\"animal\": \"NAME\"}}",
-      join(names, ", "));
+      "most: {}? Answer with JSON alone: {{\"animal\": \"NAME\"}}, with the name {} if it "
+      "resembles "
+      "none of them.",
+      join(names, ", "), kNone);
   const json words{{"type", "text"}, {"text", text}};
   const json picture{{"type", "image_url"},
                      {"image_url", {{"url", "data:image/png;base64," + in_base64(png)}}}};
@@ -94,17 +80,18 @@ json question_of(const Servers& servers, const std::string& png) {
           {"messages", json::array({message})}};
 }
 
-/// The animal in a reply; -1 if it is not as asked for, or none of ours.
-int animal_in(const std::string& reply) {
+/// The animal in a reply, -1 for none of them; empty if it is not as asked for, or not one of ours.
+std::optional<int> animal_in(const std::string& reply) {
   const auto whole = json::parse(reply, nullptr, false);
   const json::json_pointer at("/choices/0/message/content");
-  if (!whole.is_object() || !whole.contains(at) || !whole.at(at).is_string()) return -1;
+  if (!whole.is_object() || !whole.contains(at) || !whole.at(at).is_string()) return {};
   const auto answer = json::parse(whole.at(at).get<std::string>(), nullptr, false);
-  if (!answer.is_object() || !answer.contains("animal") || !answer["animal"].is_string()) return -1;
+  if (!answer.is_object() || !answer.contains("animal") || !answer["animal"].is_string()) return {};
   auto name = answer["animal"].get<std::string>();
-  if (name.size() > kLongestName) return -1;
+  if (name.size() > kLongestName) return {};
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return projegraphy::animal_of(name);
+  const int animal = projegraphy::animal_of(name);
+  return animal >= 0 || name == kNone ? std::optional(animal) : std::nullopt;
 }
 
 json commission_of(const Servers& servers, std::string_view animal, const std::string& png) {
@@ -112,61 +99,17 @@ json commission_of(const Servers& servers, std::string_view animal, const std::s
       {"enabled", true},      {"module", "canny"},       {"model", "control_v11p_sd15_canny"},
       {"weight", 1.0},        {"image", in_base64(png)}, {"resize_mode", 1},
       {"pixel_perfect", true}};
-  return {{"prompt", fmt::format("{} {}, centred, plain background", servers.style, animal)},
-          {"negative_prompt", "hand, fingers, text, nude, gore"},
+  return {{"prompt", prompt_of(servers, animal)},
+          {"negative_prompt", kUnwanted},
           {"width", kPictureSide_px},
           {"height", kPictureSide_px},
           {"steps", 20},
           {"alwayson_scripts", {{"controlnet", {{"args", json::array({unit})}}}}}};
 }
 
-std::string text_of(const json& what) {
-  return what.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
-/// True for a PNG file of a size that is worth the memory.
-bool is_small_png(const std::string& bytes) {
-  const auto number_at = [&](std::size_t at) {
-    std::uint32_t number = 0;
-    for (std::size_t k = 0; k < 4; ++k)
-      number = number << 8 | static_cast<std::uint8_t>(bytes[at + k]);
-    return number;
-  };
-  constexpr std::size_t kWidth = 16, kHeight = 20, kHead = 24;
-  return bytes.size() > kHead && bytes.starts_with("\x89PNG\r\n") &&
-         std::max(number_at(kWidth), number_at(kHeight)) <= kLargestPainting_px;
-}
-
-/// Reads the bytes of a picture by a file in memory.
-Result<renderer::Texture> decoded(const std::string& bytes) {
-  if (!is_small_png(bytes)) return fail(Errc::bad_data, "not a PNG picture");
-  const UniqueFd memory(memfd_create("handcast-painting", MFD_CLOEXEC));
-  if (!memory || write(memory.get(), bytes.data(), bytes.size()) != std::ssize(bytes))
-    return fail(Errc::unavailable, "there is no memory for a picture");
-  return renderer::read_picture(fmt::format("/proc/self/fd/{}", memory.get()));
-}
-
-/// As large as the pictures of the painter that is built in.
-renderer::Texture resized(const renderer::Texture& picture) {
-  renderer::Texture out(kPictureSide_px, kPictureSide_px);
-  for (int y = 0; y < out.height(); ++y)
-    for (int x = 0; x < out.width(); ++x)
-      out.at(x, y) =
-          picture.at(x * picture.width() / out.width(), y * picture.height() / out.height());
-  return out;
-}
-
-/// Waits unless it is time to stop.
-void rest(std::chrono::milliseconds time, const std::stop_token& stop) {
-  std::mutex mutex;
-  std::unique_lock lock(mutex);
-  std::condition_variable_any never;
-  never.wait_for(lock, stop, time, [] { return false; });
-}
-
 }  // namespace
 
-Result<std::string> Remote::ask(const Servers& servers, const Post& request,
+Result<std::string> Remote::ask(const Servers& servers, const Request& request,
                                 const std::stop_token& stop) {
   std::chrono::milliseconds pause(400);
   const auto silent = silent_ns_.find(request.url);
@@ -180,7 +123,7 @@ Result<std::string> Remote::ask(const Servers& servers, const Post& request,
       return fail(Errc::unavailable,
                   fmt::format("the {} requests of this hour are spent", servers.per_hour));
     asked_ns_.push_back(now);
-    auto reply = post(request, stop);
+    auto reply = fetch(request, stop);
     const bool may_go_away =
         !reply && (reply.error().code == Errc::unavailable || reply.error().code == Errc::timeout);
     if (may_go_away) silent_ns_[request.url] = now_ns();
@@ -194,29 +137,29 @@ Result<int> Remote::animal_of(const Servers& servers, const Silhouette& silhouet
                               const std::stop_token& stop) {
   const auto png = mask_png(silhouette);
   if (!png) return tl::make_unexpected(png.error());
-  const Post request{
+  const Request request{
       .url = without_slash(servers.recogniser) + "/v1/chat/completions",
-      .json = text_of(question_of(servers, *png)),
+      .body = text_of(question_of(servers, *png)),
       .key = servers.key,
       .patience = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * servers.patience_s)),
       .most_bytes = kMostAnswer};
   const auto reply = ask(servers, request, stop);
   if (!reply) return tl::make_unexpected(reply.error());
-  const int animal = animal_in(*reply);
-  if (animal < 0)
+  const auto animal = animal_in(*reply);
+  if (!animal)
     return fail(Errc::bad_data, fmt::format("{} does not answer with one of the animals",
                                             host_of(servers.recogniser)));
-  return animal;
+  return *animal;
 }
 
 Result<renderer::Texture> Remote::picture_of(const Servers& servers, const Silhouette& silhouette,
                                              std::string_view animal, const std::stop_token& stop) {
+  if (!servers.workflow.empty()) return by_workflow(servers, silhouette, animal, stop);
   const auto png = mask_png(silhouette);
   if (!png) return tl::make_unexpected(png.error());
-  const Post request{
+  const Request request{
       .url = without_slash(servers.painter) + "/sdapi/v1/txt2img",
-      .json = text_of(commission_of(servers, animal, *png)),
-      .key = {},
+      .body = text_of(commission_of(servers, animal, *png)),
       .patience = std::chrono::milliseconds(static_cast<std::int64_t>(1000 * servers.patience_s)),
       .most_bytes = kMostPainting};
   const auto reply = ask(servers, request, stop);
@@ -225,12 +168,12 @@ Result<renderer::Texture> Remote::picture_of(const Servers& servers, const Silho
   const json::json_pointer at("/images/0");
   const bool has_picture = whole.is_object() && whole.contains(at) && whole.at(at).is_string();
   const auto picture = has_picture
-                           ? decoded(from_base64(whole.at(at).get_ref<const std::string&>()))
+                           ? picture_in(from_base64(whole.at(at).get_ref<const std::string&>()))
                            : Result<renderer::Texture>(fail(Errc::bad_data, ""));
   if (!picture)
     return fail(Errc::bad_data, fmt::format("{} does not answer with a picture that can be read",
                                             host_of(servers.painter)));
-  return resized(*picture);
+  return *picture;
 }
 
 std::string ServerKey::for_server(const std::string& address) const {

@@ -87,9 +87,10 @@ void Studio::make(const Recogniser& recogniser, Order& order, const std::stop_to
   auto recognised = recognise(recogniser, order, stop);
   if (!recognised) return order.finish(std::nullopt, {});
   auto picture = paint(order, *recognised, stop);
+  const bool is_animal = recognised->animal >= 0;
   log::info("projegraphy: {}, distance {:.3f} (the next animal {:.3f}), {:.0f} ms",
-            animals()[static_cast<std::size_t>(recognised->animal)].name, recognised->distance,
-            recognised->runner_up, ns_to_ms(now_ns() - begin_ns));
+            is_animal ? animals()[static_cast<std::size_t>(recognised->animal)].name : "no animal",
+            recognised->distance, recognised->runner_up, ns_to_ms(now_ns() - begin_ns));
   order.finish(std::move(recognised), std::move(picture));
 }
 
@@ -98,6 +99,7 @@ std::optional<Recognised> Studio::recognise(const Recogniser& recogniser, const 
   if (order.silhouette_.area_px == 0) return std::nullopt;
   if (!order.servers_.recogniser.empty()) {
     const auto animal = remote_.animal_of(order.servers_, order.silhouette_, stop);
+    if (animal && *animal < 0) return Recognised();
     if (animal) return recogniser.place(order.silhouette_, *animal);
     complain(animal.error());
   }
@@ -106,6 +108,7 @@ std::optional<Recognised> Studio::recognise(const Recogniser& recogniser, const 
 
 renderer::Texture Studio::paint(const Order& order, const Recognised& recognised,
                                 const std::stop_token& stop) {
+  if (recognised.animal < 0) return calm_picture();
   if (!order.servers_.painter.empty()) {
     const auto& animal = animals()[static_cast<std::size_t>(recognised.animal)];
     auto picture = remote_.picture_of(order.servers_, order.silhouette_, animal.name, stop);

@@ -26,7 +26,7 @@ class Order {
   /// Waits for that.
   void wait() const;
   /// Of an order that is done: what it resembles, empty if nothing could be made of it, and its
-  /// picture (see painted()).
+  /// picture: painted(), or calm_picture() if it is no animal.
   /// @{
   const std::optional<Recognised>& recognised() const { return recognised_; }
   const renderer::Texture& picture() const { return picture_; }

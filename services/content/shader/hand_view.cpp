@@ -61,6 +61,15 @@ int strongest_joint(const renderer::HandMesh& mesh, const SurfaceTexel& texel) {
   return static_cast<int>(std::ranges::max_element(weights) - weights.begin());
 }
 
+/// By vertex, the joint that has more than half of its weight; -1 if none has.
+std::vector<int> ruling_joints(const renderer::HandMesh& mesh) {
+  std::vector<int> joints(mesh.vertex_count(), -1);
+  for (std::size_t v = 0; v < joints.size(); ++v)
+    for (std::size_t k = 0; k < 4; ++k)
+      if (mesh.joints[v][k] < kJoints && mesh.weights[v][k] > 0.5f) joints[v] = mesh.joints[v][k];
+  return joints;
+}
+
 /// The joint at the other end of the bone that begins at a joint; itself at a tip.
 int next_joint(int joint) {
   constexpr int kPalmJoint = 0, kWristJoint = 1, kMiddle = 12;
@@ -94,11 +103,14 @@ HandView::HandView(const std::set<std::string, std::less<>>& words, const Openin
   if (samplers_.empty() || !meshes_[0]) return;
   facing_ = facing_of(*meshes_[0]);
   rest_mm_ = rest_positions_mm(*meshes_[0]);
+  bones_ = bones_of(*meshes_[0]);
+  ruling_ = ruling_joints(*meshes_[0]);
   for (const auto& sampler : samplers_) {
     const bool is_live = is_live_map(kind_of(sampler));
     auto& layout = is_live ? live_ : at_rest_;
     const int part = is_live ? 2 : 1;
-    if (!layout) layout = lay_out(*meshes_[0], (width_ + 1) / part, (height_ + 1) / part);
+    if (!layout)
+      layout = lay_out(*meshes_[0], (width_ + part - 1) / part, (height_ + part - 1) / part);
   }
 }
 
@@ -131,8 +143,12 @@ HandView::Layout HandView::lay_out(const renderer::HandMesh& mesh, int width, in
 /// above.
 HandView::Places HandView::places_on(const renderer::HandMesh& mesh, int width, int height) {
   Places places;
-  for (int j = 0; j < kJoints; ++j)
+  std::array<float, kJoints> joint_x{}, joint_z{};
+  for (std::size_t j = 0; j < joint_x.size(); ++j) {
     places.rest_mm[j] = in_wrist_mm(mesh, glm::vec3(mesh.rest[j][3]));
+    joint_x[j] = places.rest_mm[j].x;
+    joint_z[j] = places.rest_mm[j].z;
+  }
   const auto map = surface_map_of(mesh, width, height);
   const auto facing = facing_of(mesh);
   const auto rest_mm = rest_positions_mm(mesh);
@@ -146,13 +162,19 @@ HandView::Places HandView::places_on(const renderer::HandMesh& mesh, int width, 
                y = static_cast<float>(row);
     const glm::vec2 uv((x + 0.5f) / static_cast<float>(width),
                        1 - (y + 0.5f) / static_cast<float>(height));
-    for (int j = 0; j < kJoints; ++j) {
-      const float dx = at.x - places.rest_mm[j].x, dz = at.z - places.rest_mm[j].z,
-                  distance = dx * dx + dz * dz;
-      float& best = nearest[is_back][static_cast<std::size_t>(j)];
-      if (distance >= best) continue;
-      best = distance;
-      (is_back ? places.back_uv : places.palm_uv)[static_cast<std::size_t>(j)] = uv;
+    // Few texels are nearer to any joint than those before.
+    std::array<float, kJoints> distance{};
+    auto& best = nearest[is_back];
+    int nearer = 0;
+    for (std::size_t j = 0; j < distance.size(); ++j) {
+      const float dx = at.x - joint_x[j], dz = at.z - joint_z[j];
+      distance[j] = dx * dx + dz * dz;
+      nearer += distance[j] < best[j];
+    }
+    for (std::size_t j = 0; nearer > 0 && j < distance.size(); ++j) {
+      if (distance[j] >= best[j]) continue;
+      best[j] = distance[j];
+      (is_back ? places.back_uv : places.palm_uv)[j] = uv;
     }
   }
   return places;
@@ -179,13 +201,25 @@ glm::vec4 HandView::at_rest(const SurfaceTexel& texel) const {
   return {texel.of<glm::vec3>(rest_mm_), facing_[meshes_[0]->chart[texel.corners[0]]]};
 }
 
+/// The bones that begin at the joints, at rest.
+std::array<HandView::Bone, kJoints> HandView::bones_of(const renderer::HandMesh& mesh) {
+  std::array<Bone, kJoints> bones;
+  for (int joint = 0; joint < kJoints; ++joint) {
+    auto& bone = bones[static_cast<std::size_t>(joint)];
+    bone.begin_mm = in_wrist_mm(mesh, glm::vec3(mesh.rest[joint][3]));
+    const auto way_mm =
+        in_wrist_mm(mesh, glm::vec3(mesh.rest[next_joint(joint)][3])) - bone.begin_mm;
+    bone.along_by_mm = way_mm / std::max(glm::dot(way_mm, way_mm), 1e-6f);
+  }
+  return bones;
+}
+
 glm::vec4 HandView::on_bone(const SurfaceTexel& texel, float edge_px) const {
-  const auto& mesh = *meshes_[0];
-  const int joint = strongest_joint(mesh, texel);
-  const glm::vec3 begin = in_wrist_mm(mesh, glm::vec3(mesh.rest[joint][3])),
-                  way = in_wrist_mm(mesh, glm::vec3(mesh.rest[next_joint(joint)][3])) - begin;
-  const float length2 = std::max(glm::dot(way, way), 1e-6f);
-  const float along = glm::dot(texel.of<glm::vec3>(rest_mm_) - begin, way) / length2;
+  const auto ruling = [&](std::size_t corner) { return ruling_[texel.corners[corner]]; };
+  const bool is_clear = ruling(0) >= 0 && ruling(0) == ruling(1) && ruling(0) == ruling(2);
+  const int joint = is_clear ? ruling(0) : strongest_joint(*meshes_[0], texel);
+  const auto& bone = bones_[static_cast<std::size_t>(joint)];
+  const float along = glm::dot(texel.of<glm::vec3>(rest_mm_) - bone.begin_mm, bone.along_by_mm);
   return {static_cast<float>(joint), edge_px, std::clamp(along, 0.f, 1.f), 1};
 }
 

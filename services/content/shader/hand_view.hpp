@@ -66,6 +66,10 @@ class HandView {
     std::array<glm::vec3, kJoints> rest_mm{};
     std::array<glm::vec2, kJoints> palm_uv{}, back_uv{};
   };
+  /// From one joint to the next.
+  struct Bone {
+    glm::vec3 begin_mm{}, along_by_mm{};  ///< the dot product with the latter: how far along
+  };
   /// A texel off the charts, and the nearest one on them.
   struct Beside {
     std::uint32_t to, from;
@@ -80,6 +84,7 @@ class HandView {
   };
   bool mentions(std::string_view prefix, std::string_view name) const;
   static Layout lay_out(const renderer::HandMesh& mesh, int width, int height);
+  static std::array<Bone, kJoints> bones_of(const renderer::HandMesh& mesh);
   static Places places_on(const renderer::HandMesh& mesh, int width, int height);
   void set_hand(const UserProgram& program, const std::string& prefix, const HandState& hand,
                 const Places& places) const;
@@ -94,6 +99,8 @@ class HandView {
   std::optional<Layout> at_rest_, live_;  ///< if there are such maps
   std::vector<float> facing_;             ///< per chart: 1 on the back, -1 on the palm
   std::vector<glm::vec3> rest_mm_;        ///< per vertex
+  std::vector<int> ruling_;               ///< ruling_joints()
+  std::array<Bone, kJoints> bones_{};
   std::array<Places, 2> places_;
   std::vector<std::string> samplers_;
   std::vector<Texels> images_;

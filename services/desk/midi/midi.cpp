@@ -80,7 +80,8 @@ class Worker final : public MidiSurface {
     auto opened = open_(device_);
     if (!opened) {
       const auto& fault = opened.error();
-      if (fault.what != said_) log::warning("midi: {}", fault.what);
+      if (fault.what != said_)
+        log::warning("desk.midi.device: {}; it is looked for again", fault.what);
       said_ = fault.what;
       pause = fault.code == Errc::disconnected ? kLookEvery : std::min(2 * pause, kLongestPause);
       {

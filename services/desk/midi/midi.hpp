@@ -11,7 +11,7 @@
 #include "services/desk/base/midi_learner.hpp"
 #include "services/desk/base/panel.hpp"
 #include "services/desk/base/surface.hpp"
-#include "services/desk/midi/port.hpp"
+#include "services/desk/midi/port/port.hpp"
 
 namespace handcast::desk {
 

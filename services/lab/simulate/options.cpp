@@ -66,7 +66,12 @@ Result<Options> parse(int argc, const char* const* argv) {
            "Writes time, truth, tracker P and corrected Q per projector frame and landmark, in "
            "camera pixels");
   line.add("--record DIR", options.record_directory,
-           "Writes the messages and images of the sensors as a recording for the replay back ends");
+           "Writes the messages and images of the sensors as a recording for the replay back ends, "
+           "and tables of them and of the true hands (docs/operating/your-own-tracker.md)");
+  line.add("--poses FILE", options.poses_file,
+           "Scores the poses of a .csv or .npy file in place of the tracker's");
+  line.add("--landmarks FILE", options.landmarks_file,
+           "Scores the landmarks of a .csv or .npy file in place of the detector's");
   line.add("--quiet", options.quiet, "Prints no progress");
   auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());

@@ -19,6 +19,11 @@ struct Options {
   /// @{
   std::string json_file, frames_directory, trace_file, record_directory;
   /// @}
+  /// Results of other methods that take the place of the tracker's and the detector's
+  /// (exchange.hpp); "" for none.
+  /// @{
+  std::string poses_file, landmarks_file;
+  /// @}
   bool quiet = false;  ///< no progress line
   std::string text;    ///< that --help or --version asks for; "" if the program shall run
 };

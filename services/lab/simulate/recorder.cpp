@@ -66,6 +66,7 @@ Result<std::unique_ptr<RecordingFeed>> RecordingFeed::create(std::unique_ptr<Sen
 
 std::vector<SensorEvent> RecordingFeed::until(std::int64_t now_ns) {
   auto events = source_->until(now_ns);
+  events_.insert(events_.end(), events.begin(), events.end());
   for (const auto& event : events)
     std::visit([this](const auto& message) { keep(message); }, event.message);
   keep_images(now_ns);
@@ -78,6 +79,7 @@ void RecordingFeed::keep_images(std::int64_t now_ns) {
     const auto newest = source_->newest_exposure(asked_ns_);
     if (!newest || (newest_ && newest->frame_id == newest_->frame_id)) continue;
     newest_ = newest;
+    exposures_.push_back(*newest);
     source_->image(*newest_, image_.view());
     const auto file = numbered_png(folder_ / "camera", image_times_us_.size());
     if (auto written = renderer::write_png(file, std::as_const(image_).view());

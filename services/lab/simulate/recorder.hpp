@@ -45,6 +45,12 @@ class RecordingFeed : public SensorFeed {
   /// written), bad_data (fewer than two samples of a hand).
   Result<void> save() const;
 
+  /// All messages, and all images, so far.
+  /// @{
+  const std::vector<SensorEvent>& events() const { return events_; }
+  const std::vector<Exposure>& exposures() const { return exposures_; }
+  /// @}
+
  private:
   RecordingFeed(std::unique_ptr<SensorFeed> source, const calib::CameraModel& camera,
                 std::filesystem::path folder);
@@ -54,6 +60,8 @@ class RecordingFeed : public SensorFeed {
 
   std::unique_ptr<SensorFeed> source_;
   std::filesystem::path folder_;
+  std::vector<SensorEvent> events_;
+  std::vector<Exposure> exposures_;
   std::vector<msg::HandPoses> poses_;
   std::vector<msg::Landmarks> landmarks_;
   std::optional<Exposure> newest_;

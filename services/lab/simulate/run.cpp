@@ -123,6 +123,9 @@ Result<std::string> run(const Options& options) {
   const auto json = score_in_sight(*rig, *calibration, options);
   if (!json) return tl::make_unexpected(json.error());
   print_summary(*json, *rig, options);
+  for (const auto& [what, file] :
+       {std::pair{"poses", options.poses_file}, std::pair{"landmarks", options.landmarks_file}})
+    if (!file.empty()) fmt::print("the {} were those of {}\n", what, file);
   print_detector((*json)["detector"]);
   if (!options.json_file.empty()) {
     // Paths and names in the metrics need not be UTF-8.

@@ -10,6 +10,7 @@
 #include "ipc/base/clock.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/lab/simulate/detector_tally.hpp"
+#include "services/lab/simulate/exchange.hpp"
 #include "services/lab/simulate/hand_speed.hpp"
 #include "services/lab/simulate/jitter.hpp"
 #include "services/lab/simulate/photograph.hpp"
@@ -48,6 +49,13 @@ Result<void> check_recordings_are_spared(const Options& options, const config::R
                             "another one",
                             options.frames_directory));
   return {};
+}
+
+/// The timed fault whose effect is measured: by a second run without it, so not if results of other
+/// methods are scored.
+std::optional<FaultTime> fault_of(const config::Rig& rig, const Options& options) {
+  const bool has_results = !options.poses_file.empty() || !options.landmarks_file.empty();
+  return has_results ? std::nullopt : fault_time(rig.twin);
 }
 
 /// The metrics and files that are made from the ticks of one run.
@@ -116,7 +124,7 @@ class Products {
       : options_(options),
         calibration_(calibration),
         twin_(twin),
-        fault_(fault_time(rig.twin)),
+        fault_(fault_of(rig, options)),
         judge_(options.draw_every > 0 ? twin::Judge::create(twin, rig.observer.step_px) : nullptr) {
   }
 
@@ -195,11 +203,22 @@ OnDetection from(std::int64_t start_ns, DetectorTally& tally) {
   };
 }
 
-nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig) {
+Result<void> save(const RecordingFeed& recording, const std::filesystem::path& folder,
+                  const twin::Twin& twin, const calib::CameraModel& lens) {
+  if (auto saved = recording.save(); !saved) return saved;
+  return write_exchange(folder, recording.events(), recording.exposures(), twin, lens);
+}
+
+nlohmann::json to_json(const DetectorTally& tally, const config::Rig& rig, const Options& options) {
   auto json = tally.to_json();
+  json["used"] = rig.cascade.filter.method != config::FilterMethod::none;
+  if (!options.landmarks_file.empty()) {
+    json["backend"] = options.landmarks_file;
+    json["why"] = json["age_ms"] = nullptr;
+    return json;
+  }
   const auto choice = landmarks::choose_detector(rig);
   json["backend"] = choice.backend;
-  json["used"] = rig.cascade.filter.method != config::FilterMethod::none;
   json["why"] = choice.why.empty() ? nlohmann::json() : nlohmann::json(choice.why);
   json["age_ms"] = rig.twin.detector.age_ms;
   return json;
@@ -223,23 +242,23 @@ std::string why_nothing_was_scored(const nlohmann::json& metrics, const Options&
 }
 
 double simulated_s(const config::Rig& rig, const Options& options) {
-  return (fault_time(rig.twin) ? 2 : 1) * (options.warm_up_s + options.seconds);
+  return (fault_of(rig, options) ? 2 : 1) * (options.warm_up_s + options.seconds);
 }
 
 Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& calibration,
                              const Options& options, const OnProgress& on_progress) {
   if (auto spared = check_recordings_are_spared(options, rig); !spared)
     return tl::make_unexpected(spared.error());
-  auto parts = open_virtual_rig(rig, calibration);
+  auto parts = open_virtual_rig(rig, calibration, options);
   if (!parts) return tl::make_unexpected(parts.error());
   const auto& twin = *parts->twin;
   auto products = Products::create(options, rig, calibration, twin);
   if (!products) return tl::make_unexpected(products.error());
 
   DetectorTally tally(twin, calibration.camera);
-  auto feed =
-      make_twin_feed(twin, std::move(parts->detector),
-                     from(seconds_to_ns(options.warm_up_s), tally), parts->lifter, parts->second);
+  auto feed = make_twin_feed(twin, std::move(parts->detector),
+                             from(seconds_to_ns(options.warm_up_s), tally), parts->lifter,
+                             parts->second, parts->sent);
   RecordingFeed* recording = nullptr;
   if (!options.record_directory.empty()) {
     auto recorder =
@@ -256,7 +275,8 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
   if (auto finished = (*products)->finish(); !finished)
     return tl::make_unexpected(finished.error());
   if (recording)
-    if (auto saved = recording->save(); !saved) return tl::make_unexpected(saved.error());
+    if (auto saved = save(*recording, options.record_directory, twin, calibration.camera); !saved)
+      return tl::make_unexpected(saved.error());
   Result<std::vector<LightMoment>> clean;
   const auto go_on = [&](double done_s) {
     if (on_progress) on_progress(options.warm_up_s + options.seconds + done_s);
@@ -264,7 +284,9 @@ Result<nlohmann::json> score(const config::Rig& rig, const calib::Calibration& c
   if ((*products)->has_fault()) clean = moments_without_fault(rig, calibration, options, go_on);
   if (!clean) return tl::make_unexpected(clean.error());
   auto json = (*products)->to_json(rig, *clean);
-  json["detector"] = to_json(tally, rig);
+  json["detector"] = to_json(tally, rig, options);
+  json["poses"] =
+      options.poses_file.empty() ? nlohmann::json() : nlohmann::json(options.poses_file);
   return json;
 }
 

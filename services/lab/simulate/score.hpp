@@ -21,15 +21,18 @@ struct VirtualRig {
   std::unique_ptr<FrameDetector> detector;       ///< must be moved into the feed
   std::optional<pose::Lifter> lifter;            ///< the same; empty if the rig has a tracker
   std::shared_ptr<SecondView> second;            ///< the same; null without pose.backend "stereo"
+  SentMessages sent;                             ///< of Options::poses_file and landmarks_file
 };
 
 /// Refuses the back ends of sensors whose light cannot be scored: all that do not see the twin's
-/// hand. Errors: bad_config, with all of them and what to add to the command.
-Result<void> check_can_be_scored(const config::Rig& rig);
+/// hand, unless the options have their results. Errors: bad_config, with all of them and what to
+/// add to the command.
+Result<void> check_can_be_scored(const config::Rig& rig, const Options& options = {});
 
-/// Opens the parts for a rig. Errors: those of check_can_be_scored, Twin::create, Pipeline::create
-/// and open_frame_detector.
-Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration);
+/// Opens the parts for a rig. Errors: those of check_can_be_scored, Twin::create, Pipeline::create,
+/// open_frame_detector, read_poses and read_landmarks.
+Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration,
+                                    const Options& options = {});
 
 /// Called after each projector frame with the virtual time done so far, warm-up included.
 using OnProgress = std::function<void(double done_s)>;
@@ -50,10 +53,12 @@ Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig,
 /// Runs the rig on its twin in virtual time and returns the metrics of `simulate --json`: those of
 /// twin::Metrics, and "rig", "motion", "mesh", "speed", "seed", "seconds", "software_ms",
 /// "motion_to_photon_ms" (from the middle of the exposure of a frame's image to the middle of its
-/// light, mean over the drawn frames; null without any), "hand_speed_m_s" (HandSpeed), "fault"
+/// light, mean over the drawn frames; null without any), "hand_speed_m_s" (HandSpeed), "poses"
+/// (the file that they are from, or null), "fault"
 /// (Recovery) and "detector" (DetectorTally, with "backend" and "age_ms", and, if a fallback took
 /// the place of the rig's detector, "why"). A rig with a timed fault runs twice, the second time
-/// without the fault.
+/// without the fault, but not if the options have results of other methods, which say nothing of
+/// that.
 ///
 /// Ignores rig_file and settings of the options, which are in `rig` already. Thread-safe: calls
 /// share no state, and the figures do not depend on other calls. Errors: those of the twin, the

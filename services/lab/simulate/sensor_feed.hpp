@@ -39,17 +39,25 @@ class SensorFeed {
 
 class SecondView;
 
+/// What takes the place of the tracker or the detector of the twin (exchange.hpp), in the order of
+/// arrival.
+struct SentMessages {
+  std::optional<std::vector<SensorEvent>> poses, landmarks;
+};
+
 /// Called after each run of a detector.
 using OnDetection = std::function<void(const Exposure&, const Detection&)>;
 
 /// Makes the feed of the twin's tracker and camera and a detector that runs back to back. `twin`
 /// must outlive it. `lifter`: a rig without a tracker (pose.backend "none"), whose poses are lifted
 /// from the landmarks and arrive 0.2 ms after them. `second`: a rig with pose.backend "stereo".
+/// `sent`: what takes the place of the tracker and the detector.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin,
                                            std::unique_ptr<FrameDetector> detector,
                                            OnDetection on_detection = {},
                                            const std::optional<pose::Lifter>& lifter = {},
-                                           std::shared_ptr<SecondView> second = {});
+                                           std::shared_ptr<SecondView> second = {},
+                                           const SentMessages& sent = {});
 /// The same with the twin's model of a detector.
 std::unique_ptr<SensorFeed> make_twin_feed(const twin::Twin& twin);
 

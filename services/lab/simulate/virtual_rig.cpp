@@ -5,6 +5,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/join.hpp"
+#include "services/lab/simulate/exchange.hpp"
 #include "services/lab/simulate/recovery.hpp"
 #include "services/lab/simulate/score.hpp"
 
@@ -17,19 +18,22 @@ struct Chosen {
   bool can_be_scored;
 };
 
-/// The back ends of sensors that the rig uses.
-std::vector<Chosen> sensors_of(const config::Rig& rig) {
+/// The back ends of sensors that the rig uses. Results in a file take the place of a sensor.
+std::vector<Chosen> sensors_of(const config::Rig& rig, const Options& options) {
   const auto& tracker = rig.pose.backend;
   const auto by_twin = [](const std::string& backend) { return backend == "twin"; };
   const auto detector = [&](const char* setting, config::Viewpoint at) {
     const auto backend = landmarks::choose_detector(rig, at).backend;
-    return Chosen{setting, backend, backend != "replay"};  // recorded landmarks: other images
+    // Recorded landmarks are of other images.
+    return Chosen{setting, backend, backend != "replay" && backend != "external"};
   };
-  std::vector<Chosen> all{
-      {"camera.backend", rig.camera.backend, by_twin(rig.camera.backend)},
-      {"pose.backend", tracker, by_twin(tracker) || tracker == "none" || tracker == "stereo"},
-      {"pose.second", rig.pose.second, rig.pose.second.empty()},
-      detector("landmarks.backend", config::Viewpoint::first)};
+  std::vector<Chosen> all{{"camera.backend", rig.camera.backend, by_twin(rig.camera.backend)}};
+  if (options.landmarks_file.empty())
+    all.push_back(detector("landmarks.backend", config::Viewpoint::first));
+  if (!options.poses_file.empty()) return all;
+  all.push_back(
+      {"pose.backend", tracker, by_twin(tracker) || tracker == "none" || tracker == "stereo"});
+  all.push_back({"pose.second", rig.pose.second, rig.pose.second.empty()});
   if (tracker != "stereo") return all;
   const auto& second = rig.camera2.backend;  // "none": the first camera has two eyes
   all.push_back({"camera2.backend", second, by_twin(second) || second == "none"});
@@ -37,11 +41,27 @@ std::vector<Chosen> sensors_of(const config::Rig& rig) {
   return all;
 }
 
+/// Gives the messages of the files of the options.
+Result<SentMessages> read_sent(const Options& options, const calib::Calibration& calibration) {
+  SentMessages sent;
+  if (!options.poses_file.empty()) {
+    auto poses = read_poses(options.poses_file);
+    if (!poses) return tl::make_unexpected(poses.error());
+    sent.poses = std::move(*poses);
+  }
+  if (!options.landmarks_file.empty()) {
+    auto landmarks = read_landmarks(options.landmarks_file, calibration.camera);
+    if (!landmarks) return tl::make_unexpected(landmarks.error());
+    sent.landmarks = std::move(*landmarks);
+  }
+  return sent;
+}
+
 }  // namespace
 
-Result<void> check_can_be_scored(const config::Rig& rig) {
+Result<void> check_can_be_scored(const config::Rig& rig, const Options& options) {
   std::vector<std::string> chosen, remedies;
-  for (const auto& [setting, backend, can_be_scored] : sensors_of(rig)) {
+  for (const auto& [setting, backend, can_be_scored] : sensors_of(rig, options)) {
     if (can_be_scored) continue;
     chosen.push_back(fmt::format("{} = \"{}\"", setting, backend));
     const bool is_second = setting == std::string_view("pose.second");
@@ -49,14 +69,19 @@ Result<void> check_can_be_scored(const config::Rig& rig) {
   }
   if (chosen.empty()) return {};
   return fail(Errc::bad_config,
-              fmt::format("{} cannot be scored: only the twin knows where the true hand is. To "
-                          "simulate the rig with the twin's sensors, add {}",
+              fmt::format("{} cannot be scored in virtual time: it does not see the twin's hand. "
+                          "To simulate the rig with the twin's sensors, add {}. To score poses or "
+                          "landmarks that another method made of the twin's images (--record), "
+                          "add --poses FILE or --landmarks FILE",
                           join(chosen, ", "), join(remedies, " ")));
 }
 
-Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration) {
-  if (auto possible = check_can_be_scored(rig); !possible)
+Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration,
+                                    const Options& options) {
+  if (auto possible = check_can_be_scored(rig, options); !possible)
     return tl::make_unexpected(possible.error());
+  auto sent = read_sent(options, calibration);
+  if (!sent) return tl::make_unexpected(sent.error());
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return tl::make_unexpected(twin.error());
   const auto truth = [&world = **twin](renderer::Side side, std::int64_t time_ns) {
@@ -65,10 +90,14 @@ Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibra
   auto pipeline =
       renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, calibration, truth);
   if (!pipeline) return tl::make_unexpected(pipeline.error());
-  auto detector = open_frame_detector(rig, calibration, **twin, config::Viewpoint::first);
+  // With landmarks of a file no detector runs.
+  auto detector = sent->landmarks
+                      ? Result<std::unique_ptr<FrameDetector>>(make_twin_detector(**twin))
+                      : open_frame_detector(rig, calibration, **twin, config::Viewpoint::first);
   if (!detector) return tl::make_unexpected(detector.error());
   VirtualRig parts{std::move(*twin), std::move(*pipeline), std::move(*detector), std::nullopt,
-                   nullptr};
+                   nullptr,          std::move(*sent)};
+  if (parts.sent.poses) return parts;
   if (rig.pose.backend == "stereo") {
     auto second = SecondView::open(rig, calibration);
     if (!second) return tl::make_unexpected(second.error());

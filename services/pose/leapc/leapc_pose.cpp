@@ -36,15 +36,15 @@ class LeapcPose final : public PoseSource {
 }  // namespace
 
 Result<std::unique_ptr<PoseSource>> open_leapc(const config::Rig& rig, const calib::Calibration&,
-                                               const std::int64_t& epoch_ns) {
+                                               const Surroundings& around) {
   auto library = leapc::open_library(rig.pose.leapc.library);
   if (!library) return fail_in("pose 'leapc'", library.error());
-  const std::int64_t running_ns = std::max<std::int64_t>(now_ns() - epoch_ns, 0);
+  const std::int64_t running_ns = std::max<std::int64_t>(now_ns() - around.epoch_ns, 0);
   return std::make_unique<LeapcPose>(std::move(*library), rig.pose.leapc,
                                      static_cast<std::uint64_t>(running_ns / kPeriod_ns));
 }
 
-Result<void> check_leapc(const config::Rig& rig, const calib::Calibration&, const std::int64_t&) {
+Result<void> check_leapc(const config::Rig& rig, const calib::Calibration&, const Surroundings&) {
   const auto library = leapc::open_library(rig.pose.leapc.library);
   if (!library) return fail_in("pose 'leapc'", library.error());
   return {};

@@ -38,7 +38,7 @@ class NonePose final : public PoseSource {
 
 Result<std::unique_ptr<PoseSource>> open_none(const config::Rig& rig,
                                               const calib::Calibration& calibration,
-                                              const std::int64_t&) {
+                                              const Surroundings&) {
   auto lifter = Lifter::open(rig, calibration);
   if (!lifter) return fail_in("pose 'none'", lifter.error());
   return std::make_unique<NonePose>(*lifter);

@@ -112,7 +112,7 @@ class OpenXrPose final : public PoseSource {
 }  // namespace
 
 Result<std::unique_ptr<PoseSource>> open_openxr(const config::Rig& rig, const calib::Calibration&,
-                                                const std::int64_t&) {
+                                                const Surroundings&) {
   const auto& settings = rig.pose.openxr;
   auto session = openxr::Session::open(settings, Deadline::in(kStart));
   if (!session) return fail_in("pose 'openxr'", session.error());
@@ -125,7 +125,7 @@ Result<std::unique_ptr<PoseSource>> open_openxr(const config::Rig& rig, const ca
   return source;
 }
 
-Result<void> check_openxr(const config::Rig& rig, const calib::Calibration&, const std::int64_t&) {
+Result<void> check_openxr(const config::Rig& rig, const calib::Calibration&, const Surroundings&) {
   const auto runtime = openxr::find_runtime(rig.pose.openxr.runtime);
   if (!runtime) return fail_in("pose 'openxr'", runtime.error());
   if (auto loads = openxr::check_library(*runtime); !loads)

@@ -49,7 +49,7 @@ class StereoPose final : public PoseSource {
 
 Result<std::unique_ptr<PoseSource>> open_stereo(const config::Rig& rig,
                                                 const calib::Calibration& calibration,
-                                                const std::int64_t&) {
+                                                const Surroundings&) {
   if (!config::has_second_images(rig))
     return fail(
         Errc::bad_config,

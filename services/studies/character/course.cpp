@@ -15,6 +15,8 @@ namespace {
 
 enum Column : std::size_t {
   kSubject,
+  kSeed,
+  kHand,
   kSession,
   kPhase,
   kCondition,
@@ -30,9 +32,11 @@ enum Column : std::size_t {
 };
 constexpr std::array kConditions{"baseline", "corrected"};
 
-CsvRow begin_line(int subject, const CharacterSession& session) {
+CsvRow begin_line(const CharacterPlayer& player, const CharacterSession& session) {
   CsvRow row(kColumns);
-  row[kSubject] = fmt::format("{}", subject);
+  row[kSubject] = fmt::format("{}", player.subject);
+  row[kSeed] = fmt::format("{}", player.seed);
+  row[kHand] = player.hand == msg::Side::left ? "left" : "right";
   row[kSession] = fmt::format("{}", session.number + 1);
   row[kPhase] = session.is_training ? "training" : "test";
   row[kCondition] = kConditions[session.is_corrected];
@@ -70,7 +74,7 @@ std::string difficulties_of(const CharacterFindings& findings) {
 std::vector<CharacterSession> character_sessions(int subject, int tests) {
   const auto order = latin_order(static_cast<std::size_t>(subject - 1), 2);
   std::vector<CharacterSession> sessions;
-  sessions.reserve(static_cast<std::size_t>(kCharacterTraining + tests));
+  sessions.reserve(std::size_t{kCharacterTraining} + static_cast<std::size_t>(tests));
   for (int number = 0; number < kCharacterTraining + tests; ++number)
     sessions.push_back({.number = number,
                         .is_training = number < kCharacterTraining,
@@ -93,13 +97,13 @@ std::vector<std::string> settings_of(bool is_corrected) {
 }
 
 CsvRow character_columns() {
-  return {"subject", "session", "phase",  "condition", "face",    "round",
-          "palm",    "asked",   "picked", "correct",   "seconds", "difficulty"};
+  return {"subject", "seed", "hand",  "session", "phase",   "condition", "face",
+          "round",   "palm", "asked", "picked",  "correct", "seconds",   "difficulty"};
 }
 
-CsvRow line_of(int subject, const CharacterSession& session, int round,
+CsvRow line_of(const CharacterPlayer& player, const CharacterSession& session, int round,
                const CharacterRound& answer) {
-  auto row = begin_line(subject, session);
+  auto row = begin_line(player, session);
   row[kRound] = fmt::format("{}", round);
   row[kPalm] = std::string(1, answer.palm);
   row[kAsked] = fmt::format("{}", answer.asked + 1);
@@ -109,11 +113,22 @@ CsvRow line_of(int subject, const CharacterSession& session, int round,
   return row;
 }
 
-CsvRow line_of(int subject, const CharacterSession& session, int difficulty) {
-  auto row = begin_line(subject, session);
+CsvRow line_of(const CharacterPlayer& player, const CharacterSession& session, int difficulty) {
+  auto row = begin_line(player, session);
   row[kRound] = "0";
   row[kDifficulty] = fmt::format("{}", difficulty);
   return row;
+}
+
+Result<void> check_player(const StudyTable& log, const CharacterPlayer& player) {
+  const auto ours = begin_line(player, {});
+  for (const auto& row : log.rows)
+    if (row[kSeed] != ours[kSeed] || row[kHand] != ours[kHand])
+      return fail(Errc::bad_config,
+                  fmt::format("{}: the log was made with --seed {} --hand {}; give the same, or "
+                              "another subject or folder",
+                              log.name, row[kSeed], row[kHand]));
+  return {};
 }
 
 int sessions_done(const StudyTable& log) {
@@ -168,14 +183,26 @@ struct Rounds {
   }
 };
 
+/// The log with the columns of today: once, there were no seed and no hand.
+Result<StudyTable> as_today(StudyTable log) {
+  auto earlier = character_columns();
+  earlier.erase(earlier.begin() + kSeed, earlier.begin() + kHand + 1);
+  if (log.columns == earlier) {
+    log.columns = character_columns();
+    for (auto& row : log.rows) row.insert(row.begin() + kSeed, 2, "");
+  }
+  if (log.columns == character_columns()) return log;
+  return fail(Errc::bad_data, fmt::format("{}: the file is no log of this game", log.name));
+}
+
 }  // namespace
 
 Result<CharacterFindings> analyse_characters(const std::vector<StudyTable>& logs) {
   Rounds rounds;
   for (const auto& log : logs) {
-    if (log.columns != character_columns())
-      return fail(Errc::bad_data, fmt::format("{}: the file is no log of this game", log.name));
-    if (auto added = rounds.add(log); !added) return tl::make_unexpected(added.error());
+    const auto today = as_today(log);
+    if (!today) return tl::make_unexpected(today.error());
+    if (auto added = rounds.add(*today); !added) return tl::make_unexpected(added.error());
   }
   auto by_subject = compare(rounds.by_subject), by_pair = compare(rounds.by_pair);
   if (!by_subject) return tl::make_unexpected(by_subject.error());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ipc/base/result.hpp"
+#include "ipc/msg/hand_poses.hpp"
 #include "services/studies/base/comparison.hpp"
 #include "services/studies/base/hand_layout.hpp"
 #include "services/studies/base/study_table.hpp"
@@ -30,14 +31,23 @@ std::vector<CharacterSession> character_sessions(int subject, int tests);
 /// leave the rig as its file has it.
 std::vector<std::string> settings_of(bool is_corrected);
 
+/// Who plays, with which hand and which random numbers.
+struct CharacterPlayer {
+  int subject = 1;
+  std::uint64_t seed = 1;
+  msg::Side hand = msg::Side::left;
+};
+
 /// The log of a subject: a line for each round, and one with round 0 for the question of difficulty
 /// at the end of a session, without which a session is not over.
 /// @{
 CsvRow character_columns();
-CsvRow line_of(int subject, const CharacterSession& session, int round,
+CsvRow line_of(const CharacterPlayer& player, const CharacterSession& session, int round,
                const CharacterRound& answer);
-CsvRow line_of(int subject, const CharacterSession& session, int difficulty);
+CsvRow line_of(const CharacterPlayer& player, const CharacterSession& session, int difficulty);
 /// @}
+/// Whether a log may be gone on with. Errors: bad_config (it has another seed or hand).
+Result<void> check_player(const StudyTable& log, const CharacterPlayer& player);
 /// How many sessions of a log are over.
 int sessions_done(const StudyTable& log);
 
@@ -51,7 +61,8 @@ struct CharacterFindings {
   /// By condition and difficulty 1 to 5: how many sessions.
   std::vector<std::array<int, 5>> difficulty;
 };
-/// Errors: bad_data (no log, a line that is none of the game).
+/// Also of logs without seed and hand, as they were once. Errors: bad_data (no log, a line that is
+/// none of the game).
 Result<CharacterFindings> analyse_characters(const std::vector<StudyTable>& logs);
 nlohmann::json to_json(const CharacterFindings& findings);
 std::string page_of(const CharacterFindings& findings);

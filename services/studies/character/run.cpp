@@ -54,6 +54,12 @@ Result<std::string> analyse_logs(const Options& options) {
   });
 }
 
+CharacterPlayer player_of(const Options& options) {
+  return {.subject = options.subject,
+          .seed = static_cast<std::uint64_t>(options.seed),
+          .hand = options.side};
+}
+
 /// One subject at the rig.
 class Play {
  public:
@@ -92,8 +98,8 @@ class Play {
       if (auto shown = hand_.show(picture_.draw(game.scene(), session.face)); !shown) return shown;
       if (game.results().size() == answered) continue;
       const auto& answer = game.results().back();
-      if (auto kept = log_.add(
-              line_of(options_.subject, session, static_cast<int>(game.results().size()), answer));
+      if (auto kept = log_.add(line_of(player_of(options_), session,
+                                       static_cast<int>(game.results().size()), answer));
           !kept)
         return kept;
       fmt::print("  {:2}  {:.2f} s  {}\n", game.results().size(), answer.seconds,
@@ -102,7 +108,7 @@ class Play {
     }
     const auto difficulty = ask_difficulty();
     if (!difficulty) return tl::make_unexpected(difficulty.error());
-    return log_.add(line_of(options_.subject, session, *difficulty));
+    return log_.add(line_of(player_of(options_), session, *difficulty));
   }
 
   Result<int> ask_difficulty() const {
@@ -128,6 +134,8 @@ Result<std::string> run(const Options& options) {
   auto log = StudyLog::open(fs::path(options.folder) / log_name(kLogs, options.subject),
                             character_columns());
   if (!log) return tl::make_unexpected(log.error());
+  if (auto same = check_player(log->earlier(), player_of(options)); !same)
+    return tl::make_unexpected(same.error());
   auto hand = RigHand::open(options.rig, options.side, kWidth_px, kHeight_px, "study character");
   if (!hand) return tl::make_unexpected(hand.error());
   const auto mesh = hand->mesh();

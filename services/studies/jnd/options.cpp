@@ -70,6 +70,8 @@ Result<ParsedJnd> parse_jnd(int argc, char** argv) {
   line.add("--motion MOTION", options.stimulus.motion, "How the hand moves: as twin.motion");
   line.add("--speed K", options.stimulus.speed, "Speed of the motion", {0.05, 20});
   line.add("--content WHAT", options.stimulus.content, "The light: a picture, or builtin:NAME");
+  line.add("--midi DEVICE", options.midi,
+           "Buttons of a MIDI device answer, too: a part of its name; jack:PART, one of JACK");
   line.add("--answers-by-model", options.answers_by_model,
            "A simulated subject answers at once, to try the program");
   line.add(

@@ -20,6 +20,7 @@ struct JndOptions {
   std::string json_file, page_folder;  ///< of an analysis or a simulation
   std::string picture_file;            ///< a picture of the stimulus
   std::string monitor;
+  std::string midi;  ///< a device whose buttons answer
   bool in_window = false;
   double rate_hz = 60;
   double interval_s = 3;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
@@ -27,6 +29,20 @@ void press(renderer::Image<std::uint8_t>& marks, const renderer::PointerEvent& a
 
 }  // namespace
 
+bool has_waited(std::span<const std::int64_t> shown_ns, std::int64_t refresh_ns) {
+  constexpr double kFastest = 0.7, kLeastPhase = 0.7;
+  const auto count = static_cast<double>(shown_ns.size()),
+             refreshes = static_cast<double>(shown_ns.back() - shown_ns.front()) /
+                         static_cast<double>(refresh_ns);
+  if (refreshes < kFastest * (count - 1)) return false;
+  std::complex<double> phase;
+  for (const auto shown : shown_ns)
+    phase += std::polar(1.0, 2 * std::numbers::pi *
+                                 static_cast<double>((shown - shown_ns.front()) % refresh_ns) /
+                                 static_cast<double>(refresh_ns));
+  return std::abs(phase) > kLeastPhase * count;
+}
+
 Result<std::unique_ptr<StudyScreen>> StudyScreen::open(renderer::WindowSettings settings,
                                                        double rate_hz) {
   const int width_px = settings.width_px, height_px = settings.height_px;
@@ -41,15 +57,16 @@ Result<std::unique_ptr<StudyScreen>> StudyScreen::open(renderer::WindowSettings 
 Result<void> StudyScreen::find_rhythm() {
   const auto refresh_ns = window_->refresh_ns();
   const renderer::Texture dark(width_px_, height_px_, gallery::kNight);
-  constexpr int kSettling = 5, kShown = 20;
-  std::int64_t begin_ns = 0, end_ns = 0;
+  constexpr int kSettling = 5, kShown = 21;
+  std::vector<std::int64_t> shown_ns;
+  shown_ns.reserve(kShown);
   for (int picture = 0; picture < kSettling + kShown; ++picture) {
     const auto shown = window_->show(dark.view(), {0, 0, width_px_, height_px_});
     if (!shown) return tl::make_unexpected(shown.error());
-    (picture < kSettling ? begin_ns : end_ns) = shown->shown_ns;
+    if (picture >= kSettling) shown_ns.push_back(shown->shown_ns);
   }
-  last_ns_ = end_ns;
-  waits_ = refresh_ns && end_ns - begin_ns > kShown * *refresh_ns * 7 / 10;
+  last_ns_ = shown_ns.back();
+  waits_ = refresh_ns && has_waited(shown_ns, *refresh_ns);
   if (!waits_)
     log::warning(
         "the window does not wait for the monitor: what is known of its refreshes is only "
@@ -82,13 +99,19 @@ renderer::Texture StudyScreen::page(const std::vector<std::string>& lines) const
 }
 
 Result<std::string> StudyScreen::ask(const std::vector<std::string>& lines,
-                                     const std::vector<std::string_view>& keys) {
+                                     const std::vector<std::string_view>& keys,
+                                     const TakeKeys& take_others) {
   const auto picture = page(lines);
-  window_->take_keys();  // those of before were no answer
+  const auto take = [&] {
+    auto taken = window_->take_keys();
+    if (take_others) std::ranges::move(take_others(), std::back_inserter(taken));
+    return taken;
+  };
+  take();  // those of before were no answer
   for (;;) {
     if (auto shown = show(picture.view(), {0, 0, width_px_, height_px_}); !shown)
       return tl::make_unexpected(shown.error());
-    for (const auto& key : window_->take_keys())
+    for (const auto& key : take())
       if (std::ranges::find(keys, key) != keys.end()) return key;
   }
 }

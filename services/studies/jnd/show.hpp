@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,6 +31,11 @@ struct ShownInterval {
   bool is_left = false;       ///< Escape was pressed meanwhile
 };
 
+/// Whether pictures that were shown one after another, at these times, waited for the refreshes of
+/// a monitor: they came no faster, and at the same phase of a refresh. A slow computer without
+/// vsync is not faster, either, but has no phase.
+bool has_waited(std::span<const std::int64_t> shown_ns, std::int64_t refresh_ns);
+
 /// Keys that end what waits for them.
 inline constexpr std::string_view kEscape = "Escape", kGoOn = " ";
 
@@ -41,10 +48,15 @@ class StudyScreen {
   static Result<std::unique_ptr<StudyScreen>> open(renderer::WindowSettings settings,
                                                    double rate_hz);
 
-  /// Shows lines of text, the first one larger, until one of the keys is pressed. Returns the key.
-  /// Errors: those of Window::show(); disconnected (the window was closed).
+  /// Keys that were pressed since the last call.
+  using TakeKeys = std::function<std::vector<std::string>()>;
+
+  /// Shows lines of text, the first one larger, until one of the keys is pressed, on the keyboard
+  /// or on something else that has keys. Returns the key. Errors: those of Window::show();
+  /// disconnected (the window was closed).
   Result<std::string> ask(const std::vector<std::string>& lines,
-                          const std::vector<std::string_view>& keys);
+                          const std::vector<std::string_view>& keys,
+                          const TakeKeys& take_others = {});
   /// Shows the same for a time. Returns false if Escape was pressed meanwhile.
   Result<bool> tell(const std::vector<std::string>& lines, double seconds);
   /// Shows an interval of the motion. Every frame is drawn for the refresh that will show it.

@@ -10,8 +10,10 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/log.hpp"
 #include "renderer/media/picture.hpp"
 #include "services/lab/twin/random.hpp"
+#include "services/studies/jnd/midi_buttons.hpp"
 #include "services/studies/jnd/run.hpp"
 #include "services/studies/jnd/show.hpp"
 #include "services/studies/jnd/subjects.hpp"
@@ -71,13 +73,14 @@ Result<std::vector<std::string>> consent(const fs::path& folder) {
 class Sitting {
  public:
   Sitting(const JndOptions& options, Course course, StudyLog log, StudyLog light, Stimulus stimulus,
-          std::unique_ptr<StudyScreen> screen)
+          std::unique_ptr<StudyScreen> screen, std::optional<MidiButtons> buttons)
       : options_(options),
         course_(std::move(course)),
         log_(std::move(log)),
         light_(std::move(light)),
         stimulus_(std::move(stimulus)),
-        screen_(std::move(screen)) {
+        screen_(std::move(screen)),
+        buttons_(std::move(buttons)) {
     if (options.answers_by_model)
       model_.emplace(predicted_jnds_ms(stimulus_.speeds_deg_s(0, kLongestStart_s)),
                      options.course.seed, options.course.subject);
@@ -86,6 +89,8 @@ class Sitting {
   Result<std::string> run() {
     if (const auto agreed = agree(); !agreed || !*agreed)
       return agreed.map([](bool) { return std::string("The subject did not agree."); });
+    if (const auto learned = learn_buttons(); !learned || !*learned)
+      return learned.map([&](bool) { return left(); });
     // A program that was ended at the painting asks for it now.
     for (const auto& result : course_.results())
       if (!result.is_training && !fs::exists(marks_file(options_, result.condition)))
@@ -128,6 +133,30 @@ class Sitting {
     return screen_->ask(*page, {kGoOn, kEscape}).map([](const auto& key) { return key == kGoOn; });
   }
 
+  /// Finds out which buttons of a MIDI device are the two answers.
+  Result<bool> learn_buttons() {
+    if (!buttons_ || model_) return true;
+    for (const std::string answer : {"1", "2"}) {
+      const auto pressed = [&] {
+        return std::vector<std::string>(buttons_->learn(answer) ? 1 : 0, answer);
+      };
+      const auto key = screen_->ask({"Buttons",
+                                     fmt::format("Press the button that will say: the {} film.",
+                                                 answer == "1" ? "first" : "second"),
+                                     "", "Escape: later"},
+                                    {answer, kEscape}, pressed);
+      if (!key) return tl::make_unexpected(key.error());
+      if (*key == kEscape) return false;
+      log::info("a button of the MIDI device answers {}", answer);
+    }
+    return true;
+  }
+
+  /// The keys of the MIDI device.
+  std::vector<std::string> buttons() {
+    return buttons_ ? buttons_->take_keys() : std::vector<std::string>();
+  }
+
   Result<bool> begin(const Trial& trial) {
     if (model_) return true;
     return screen_
@@ -157,8 +186,8 @@ class Sitting {
       return answer;
     }
     const auto begin_ns = now_ns();
-    const auto key =
-        screen_->ask({"In which film was the light late?", "1   or   2"}, {"1", "2", kEscape});
+    const auto key = screen_->ask({"In which film was the light late?", "1   or   2"},
+                                  {"1", "2", kEscape}, [&] { return buttons(); });
     if (!key) return tl::make_unexpected(key.error());
     if (*key == kEscape) return std::optional<Answer>();
     shown.picks_first = *key == "1";
@@ -216,6 +245,7 @@ class Sitting {
   StudyLog log_, light_;
   Stimulus stimulus_;
   std::unique_ptr<StudyScreen> screen_;
+  std::optional<MidiButtons> buttons_;
   std::optional<SimulatedSubject> model_;
 };
 
@@ -239,6 +269,12 @@ Result<std::string> take_course(const JndOptions& options) {
     return tl::make_unexpected(replayed.error());
   auto stimulus = Stimulus::open(options.stimulus);
   if (!stimulus) return tl::make_unexpected(stimulus.error());
+  std::optional<MidiButtons> buttons;
+  if (!options.midi.empty()) {
+    auto opened = MidiButtons::open(options.midi);
+    if (!opened) return fail(opened.error().code, "--midi: " + opened.error().what);
+    buttons.emplace(std::move(*opened));
+  }
   auto screen = StudyScreen::open({.title = "handcast study",
                                    .width_px = options.stimulus.width_px,
                                    .height_px = options.stimulus.height_px,
@@ -250,7 +286,7 @@ Result<std::string> take_course(const JndOptions& options) {
                                   options.rate_hz);
   if (!screen) return tl::make_unexpected(screen.error());
   return Sitting(options, std::move(course), std::move(*log), std::move(*light),
-                 std::move(*stimulus), std::move(*screen))
+                 std::move(*stimulus), std::move(*screen), std::move(buttons))
       .run();
 }
 

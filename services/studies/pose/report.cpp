@@ -2,46 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "services/studies/base/page.hpp"
 #include "services/studies/pose/pose.hpp"
 #include "services/studies/pose/run.hpp"
+#include "services/studies/pose/sessions.hpp"
 
 namespace handcast::study {
 namespace {
 
-enum LogColumn : std::size_t { kPerson, kSessionTime, kKind, kName, kFirst, kSecond };
-
-struct Session {
-  std::string time;
-  std::vector<std::pair<std::string, double>> poses;    ///< name, seconds
-  std::map<std::string, std::array<double, 2>> ranges;  ///< by joint: least and most, degrees
-};
-
-Result<std::vector<Session>> sessions_in(const StudyTable& log) {
-  if (log.columns != pose_columns())
-    return fail(Errc::bad_data, fmt::format("{}: the file is no log of poses", log.name));
-  std::vector<Session> sessions;
-  for (std::size_t r = 0; r < log.rows.size(); ++r) {
-    const auto& row = log.rows[r];
-    if (sessions.empty() || sessions.back().time != row[kSessionTime])
-      sessions.push_back({.time = row[kSessionTime], .poses = {}, .ranges = {}});
-    const auto first = log.number(r, kFirst);
-    if (!first) return tl::make_unexpected(first.error());
-    if (row[kKind] == "pose") {
-      sessions.back().poses.emplace_back(row[kName], *first);
-      continue;
-    }
-    const auto second = log.number(r, kSecond);
-    if (!second) return tl::make_unexpected(second.error());
-    sessions.back().ranges[row[kName]] = {*first, *second};
-  }
-  return sessions;
-}
-
 /// The range of a joint over the sessions: a bar for each, from stretched to bent.
-std::string bars_of(const std::vector<Session>& sessions, const std::string& joint) {
+std::string bars_of(const std::vector<PoseSession>& sessions, const std::string& joint) {
   constexpr double kWidth = 480, kPerDegree = kWidth / 130, kBar = 8;
   std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"range\">",
                                 kWidth, kBar * static_cast<double>(sessions.size()));
@@ -57,11 +28,11 @@ std::string bars_of(const std::vector<Session>& sessions, const std::string& joi
   return svg + "</svg>";
 }
 
-std::string ranges_of(const std::vector<Session>& sessions) {
+std::string ranges_of(const std::vector<PoseSession>& sessions) {
   std::string rows;
   for (std::size_t joint = 0; joint < kFlexions; ++joint) {
     const auto name = flexion_name(joint);
-    const auto has = [&](const Session& session) { return session.ranges.contains(name); };
+    const auto has = [&](const PoseSession& session) { return session.ranges.contains(name); };
     if (std::ranges::none_of(sessions, has)) continue;
     const auto first = std::ranges::find_if(sessions, has)->ranges.at(name);
     const auto last = std::find_if(sessions.rbegin(), sessions.rend(), has)->ranges.at(name);
@@ -76,22 +47,17 @@ std::string ranges_of(const std::vector<Session>& sessions) {
 
 }  // namespace
 
-CsvRow pose_columns() { return {"person", "session", "kind", "name", "first", "second"}; }
-
 Result<std::string> pose_report(const std::vector<StudyTable>& logs) {
   std::string page = page_head("Guess the Pose");
   for (const auto& log : logs) {
-    const auto sessions = sessions_in(log);
+    const auto sessions = pose_sessions(log);
     if (!sessions) return tl::make_unexpected(sessions.error());
     if (sessions->empty()) continue;
     page += fmt::format("<h2>Person {}</h2><table><tr><th>Session<th>poses<th>seconds in all</tr>",
-                        escaped(log.rows[0][kPerson]));
-    for (const auto& session : *sessions) {
-      double all_s = 0;
-      for (const auto& [name, seconds] : session.poses) all_s += seconds;
+                        escaped(log.rows[0][0]));
+    for (const auto& session : *sessions)
       page += fmt::format("<tr><td>{}<td>{}<td>{:.1f}", escaped(session.time), session.poses.size(),
-                          all_s);
-    }
+                          session.seconds());
     page += "</table>" + ranges_of(*sessions);
   }
   return page + "</html>\n";

@@ -8,10 +8,12 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/studies/base/rig_hand.hpp"
 #include "services/studies/base/study_command.hpp"
 #include "services/studies/pose/picture.hpp"
+#include "services/studies/pose/sessions.hpp"
 
 namespace handcast::study {
 namespace {
@@ -28,10 +30,10 @@ the range of motion of each joint are in DIR/pose-NN.csv.
   handcast study pose DIR --person 1                    nine poses
   handcast study pose --teach "letter L" --poses my.csv  adds the pose that is held still for 3 s
   handcast study pose DIR --person 1 --poses my.csv     plays these
-  handcast study pose --report DIR --page OUT           times and range of motion over the sessions, to print)";
+  handcast study pose --report DIR --pdf FILE           times and range of motion over the sessions, to print)";
 
 struct Options {
-  std::string folder = "poses", rig, poses_file, taught, page_folder = "pose_report";
+  std::string folder = "poses", rig, poses_file, taught, page_folder, pdf_file;
   std::vector<std::string> reported;
   int person = 1;
   double seed = 1;
@@ -41,11 +43,19 @@ struct Options {
 Result<std::string> report(const Options& options) {
   const auto logs = read_logs(options.reported, kLogs);
   if (!logs) return tl::make_unexpected(logs.error());
+  std::string written_files;
+  if (!options.pdf_file.empty()) {
+    const auto pdf = pose_pdf(*logs);
+    if (!pdf) return tl::make_unexpected(pdf.error());
+    if (auto written = write_whole(options.pdf_file, *pdf); !written)
+      return tl::make_unexpected(written.error());
+    written_files = options.pdf_file + "\n";
+    if (options.page_folder.empty()) return written_files;
+  }
   const auto page = pose_report(*logs);
   if (!page) return tl::make_unexpected(page.error());
-  return write_page(options.page_folder, *page).map([](const auto& file) {
-    return file.string() + "\n";
-  });
+  return write_page(options.page_folder.empty() ? "pose_report" : options.page_folder, *page)
+      .map([&](const auto& file) { return written_files + file.string() + "\n"; });
 }
 
 /// Waits until the hand is held still, and keeps its pose.
@@ -158,7 +168,8 @@ int run_pose(int argc, char** argv) {
   line.add("--poses FILE.csv", options.poses_file, "Poses that somebody has taught");
   line.add("--teach NAME", options.taught, "Adds the pose that is held still to --poses");
   line.add("--report FILE", options.reported, "Reports on logs, or a folder of logs");
-  line.add("--page DIR", options.page_folder, "Where the report is written");
+  line.add("--page DIR", options.page_folder, "Writes the report as DIR/index.html");
+  line.add("--pdf FILE", options.pdf_file, "Writes the report as a PDF file, A4");
   add_rig_hand(line, options.rig, options.side);
   line.add("--seed S", options.seed, "Seed of the order of the poses", {0, 1e15});
   if (const auto code = line.answered(argc, argv)) return *code;

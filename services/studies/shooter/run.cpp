@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
@@ -17,6 +18,7 @@
 #include "services/studies/base/rig_hand.hpp"
 #include "services/studies/base/study_command.hpp"
 #include "services/studies/shooter/picture.hpp"
+#include "services/studies/shooter/speaker.hpp"
 
 namespace handcast::study {
 namespace {
@@ -25,8 +27,8 @@ constexpr int kWidth_px = 1024, kHeight_px = 640;
 constexpr float kFullTilt_rad = 0.45f;
 constexpr char kNotes[] =
     R"(Start it beside a rig that is up and show your palm: tilt it about the forearm to steer. The ship shoots by itself. Lives are
-on the fingers, the score is on the thumb. Two people play on two hands if it is started twice, with --hand right, too.
-With --keys, a and d steer in this terminal, for a rig without a person.)";
+on the fingers, the score is on the thumb. With --two-hands, both hands have one score, one set of lives and one wave:
+who has no aliens left gets half of the other hand's. With --keys, a and d steer in this terminal, for a rig without a person.)";
 
 /// Keys that are typed, without waiting for a line.
 class Keys {
@@ -63,37 +65,65 @@ class Keys {
 };
 
 struct Options {
-  std::string rig;
+  std::string rig, sound;
   msg::Side side = msg::Side::left;
   Face face = Face::palm;
-  bool keys = false;
+  bool keys = false, two_hands = false;
   double seconds = 0, seed = 1;
 };
 
+/// A hand that plays.
+struct PlayingHand {
+  RigHand hand;
+  ShooterPicture picture;
+  TiltSteering tilt;
+};
+
+Result<std::vector<PlayingHand>> open_hands(const Options& options) {
+  std::vector<PlayingHand> hands;
+  std::vector<msg::Side> sides{options.side};
+  if (options.two_hands) sides = {msg::Side::left, msg::Side::right};
+  for (const auto side : sides) {
+    auto hand = RigHand::open(options.rig, side, kWidth_px, kHeight_px, "study shooter");
+    if (!hand) return tl::make_unexpected(hand.error());
+    const auto mesh = hand->mesh();
+    if (!mesh) return tl::make_unexpected(mesh.error());
+    ShooterPicture picture(*mesh, kWidth_px, kHeight_px);
+    hands.push_back({std::move(*hand), std::move(picture), TiltSteering(side)});
+  }
+  return hands;
+}
+
 Result<std::string> play(const Options& options) {
-  auto hand = RigHand::open(options.rig, options.side, kWidth_px, kHeight_px, "study shooter");
-  if (!hand) return tl::make_unexpected(hand.error());
-  const auto mesh = hand->mesh();
-  if (!mesh) return tl::make_unexpected(mesh.error());
-  ShooterPicture picture(*mesh, kWidth_px, kHeight_px);
-  ShooterGame game(static_cast<std::uint64_t>(options.seed));
-  TiltSteering tilt(options.side);
+  auto hands = open_hands(options);
+  if (!hands) return tl::make_unexpected(hands.error());
+  ShooterGame game(static_cast<std::uint64_t>(options.seed), hands->size());
+  ShooterSpeaker speaker(options.sound);
   std::optional<Keys> keys;
   if (options.keys) keys.emplace();
   const double begin_s = ns_to_seconds(now_ns());
   double last_s = begin_s;
   int best = 0;
+  std::vector<ShooterPlayer> players(hands->size());
   while (!daemon::stop_requested() &&
          (options.seconds <= 0 || last_s - begin_s < options.seconds)) {
-    if (auto waited = hand->wait(); !waited) return tl::make_unexpected(waited.error());
+    for (auto& each : *hands)
+      if (auto waited = each.hand.wait(); !waited) return tl::make_unexpected(waited.error());
     const double now_s = ns_to_seconds(now_ns());
-    const auto& joints = hand->joints();
-    const float steer = keys ? keys->steering() : joints ? tilt.at(now_s, *joints) : 0;
-    game.step(now_s - last_s, steer, joints.has_value());
+    const float by_keys = keys ? keys->steering() : 0;
+    for (std::size_t i = 0; i < players.size(); ++i) {
+      const auto& joints = (*hands)[i].hand.joints();
+      players[i].is_seen = joints.has_value();
+      players[i].steer = keys ? by_keys : joints ? (*hands)[i].tilt.at(now_s, *joints) : 0;
+    }
+    speaker.play(game.step(now_s - last_s, players));
     last_s = now_s;
     best = std::max(best, game.scene().score);
-    if (auto shown = hand->show(picture.draw(game.scene(), options.face, now_s - begin_s)); !shown)
-      return tl::make_unexpected(shown.error());
+    for (std::size_t i = 0; i < players.size(); ++i) {
+      auto& [hand, picture, tilt] = (*hands)[i];
+      auto shown = hand.show(picture.draw(game.scene(i), options.face, now_s - begin_s));
+      if (!shown) return tl::make_unexpected(shown.error());
+    }
   }
   return fmt::format("Best score: {}\n", best);
 }
@@ -122,6 +152,9 @@ int run_shooter(int argc, char** argv) {
         return Result<void>();
       },
       "The side of the hand that is played on");
+  line.add("--two-hands", options.two_hands, "Plays one game on both hands");
+  line.add("--sound DEVICE", options.sound,
+           "Plays sounds on a sound device, by its ALSA name, e.g. default");
   line.add("--keys", options.keys, "Steers by the keys a and d instead");
   line.add("--seconds N", options.seconds, "Ends after so many seconds", {1, 86400});
   line.add("--seed S", options.seed, "Seed of all random numbers", {0, 1e15});

@@ -21,6 +21,7 @@
 #include "ipc/control/choose_rig.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/daemon/stop_signal.hpp"
+#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/live_settings.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "services/recording/about.hpp"
@@ -249,7 +250,7 @@ Result<void> record(const Options& options) {
   // Projections have what was shown.
   std::erase_if(*there, [](const std::string& stream) {
     return stream == msg::kTestPictures || stream.starts_with("content.") ||
-           stream.starts_with("guest.") || stream == msg::kLiveSettings;
+           msg::is_for_guests(stream) || stream == msg::kLiveSettings;
   });
   const auto streams = choose(options.rings, *there);
   if (!streams) return tl::make_unexpected(streams.error());

@@ -7,6 +7,7 @@
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "tests/scratch.hpp"
+#include "tests/services/guest_ring.hpp"
 #include "tests/services/landmarks/detector_scenes.hpp"
 #include "tests/services/unread_settings.hpp"
 
@@ -97,9 +98,47 @@ TEST_P(DetectorContract, LandmarksDependOnlyOnTheSettingsThatTheirRowNames) {
       << "a setting is missing in the row's `reads`";
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, DetectorContract,
-                         testing::ValuesIn(service::names_of(detector_backends())),
+/// All but `external`, whose landmarks are of the images that a program has searched.
+std::vector<std::string_view> detectors_of_the_rig() {
+  auto names = service::names_of(detector_backends());
+  std::erase(names, "external");
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, DetectorContract, testing::ValuesIn(detectors_of_the_rig()),
                          [](const auto& named) { return std::string(named.param); });
+
+TEST(ExternalDetector, RemovesTheDistortionOfTheLensFromWhatAProgramSends) {
+  test::GuestRing<msg::Landmarks> program("guest.landmarks");
+  config::Rig rig;
+  rig.landmarks.backend = "external";
+  auto calibration = calib::reference_rig();
+  calibration.camera.k1 = -0.3;
+  const auto detector = open_detector(rig, calibration, now_ns(), {}, program.open());
+  ASSERT_TRUE(detector) << detector.error().what;
+  const auto first = (*detector)->detect(frame_of(6, 5), {}, Deadline::in(1ms));
+  ASSERT_TRUE(first) << "the rig waits for a first result";
+  EXPECT_EQ(first->header.frame_id, 6u);
+  EXPECT_EQ(first->count, 0u);
+  const auto silence = (*detector)->detect(frame_of(8, now_ns()), {}, Deadline::in(1ms));
+  ASSERT_FALSE(silence);
+  EXPECT_EQ(silence.error().code, Errc::timeout);
+
+  const auto image = calibration.camera.distort({10, 20});
+  msg::Landmarks sent;
+  sent.header = {7, now_ns(), 0};
+  sent.count = 1;
+  sent.hands[0].presence = 1;
+  sent.hands[0].points[4] = {static_cast<float>(image.x), static_cast<float>(image.y), 1, 2};
+  program.send(sent);
+  const auto found = (*detector)->detect(frame_of(8, now_ns()), {}, Deadline::in(5s));
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_EQ(found->header.frame_id, 7u) << "the image that the program searched";
+  EXPECT_EQ(found->header.origin_ns, sent.header.origin_ns);
+  EXPECT_NEAR(found->hands[0].points[4].x_px, 10, 0.01);
+  EXPECT_NEAR(found->hands[0].points[4].y_px, 20, 0.01);
+  EXPECT_GT(std::abs(image.x - 10), 1) << "the lens must distort";
+}
 
 TEST(TwinDetector, TakesAsLongAsTheRigSays) {
   config::Rig rig;

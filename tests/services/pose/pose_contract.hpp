@@ -99,7 +99,8 @@ class PoseContract : public testing::TestWithParam<PoseBackend> {
   /// A source from which a slow machine could not fetch the first two samples is opened again.
   static std::optional<msg::HandPoses> second_sample(const config::Rig& rig) {
     for (int attempt = 1; attempt <= 10; ++attempt) {
-      const auto source = GetParam().open(rig, two_cameras(), now_ns() + attempt * to_ns(200ms));
+      const auto source =
+          GetParam().open(rig, two_cameras(), Surroundings{now_ns() + attempt * to_ns(200ms)});
       if (!source) throw std::runtime_error(source.error().what);
       msg::HandPoses first, second;
       if (!sample(**source, first, Deadline::in(10s), {}, 0)) continue;

@@ -2,13 +2,14 @@
 // The contract of the pose back ends that need no device, and tests of single ones.
 #include <vector>
 
+#include "tests/services/guest_ring.hpp"
 #include "tests/services/pose/pose_contract.hpp"
 
 namespace handcast::pose {
 namespace {
 
-/// Back ends with tests of their own, which put something in the place of the device.
-constexpr std::array<std::string_view, 1> kDevices{"leapc"};
+/// Back ends with tests of their own, which put something in the place of the device or program.
+constexpr std::array<std::string_view, 2> kDevices{"external", "leapc"};
 
 std::vector<PoseBackend> without_devices() {
   std::vector<PoseBackend> rows;
@@ -39,6 +40,41 @@ TEST(TwinPose, ALostSampleIsDeliveredWithoutAHand) {
   msg::HandPoses poses;
   ASSERT_TRUE((*source)->sample(poses, Deadline::in(5s)));
   EXPECT_EQ(poses.count, 0u);
+}
+
+TEST(ExternalPose, PassesOnWhatAProgramSends) {
+  test::GuestRing<msg::HandPoses> program("guest.pose");
+  config::Rig rig;
+  rig.pose.backend = "external";
+  const auto source = open_pose_source(rig, calib::reference_rig(), now_ns(), program.open());
+  ASSERT_TRUE(source) << source.error().what;
+  const auto twin = twin::Twin::create(rig, calib::reference_rig()).value();
+  msg::HandPoses first;
+  ASSERT_TRUE((*source)->sample(first, Deadline::in(1ms))) << "the rig waits for a first sample";
+  EXPECT_EQ(first.count, 0u);
+  EXPECT_FALSE((*source)->sample(first, Deadline::in(1ms)));
+  std::uint64_t last = first.header.frame_id;
+  for (std::uint64_t k = 0; k < 3; ++k) {
+    auto sent = twin->tracker_sample(k).poses;
+    sent.header = {99, now_ns(), 0};
+    sent.calibration = 77;
+    program.send(sent);
+    msg::HandPoses poses;
+    ASSERT_TRUE((*source)->sample(poses, Deadline::in(5s)));
+    EXPECT_GT(poses.header.frame_id, last) << "the numbers of a program need not increase";
+    last = poses.header.frame_id;
+    EXPECT_EQ(poses.header.origin_ns, sent.header.origin_ns);
+    EXPECT_EQ(poses.hands[0].joints[10].position_m, sent.hands[0].joints[10].position_m);
+    EXPECT_EQ(poses.calibration, 0u);
+  }
+}
+
+TEST(ExternalPose, IsRefusedWithoutARigButNotByACheck) {
+  config::Rig rig;
+  rig.pose.backend = "external";
+  EXPECT_THAT(open_pose_source(rig, calib::reference_rig(), 0).error().what,
+              testing::HasSubstr("a rig that is up"));
+  EXPECT_TRUE(check_pose_sources(rig, calib::reference_rig()));
 }
 
 TEST(StereoPose, NeedsASecondCameraInTheCalibration) {

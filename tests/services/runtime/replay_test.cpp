@@ -139,10 +139,11 @@ TEST_F(Replay, AFileThatMayNotBeLookedForIsASentenceNotAnException) {
     return testing::HasSubstr(std::string(name) + "' exists: ");
   };
   const auto open_camera = [](const auto&... with) { return camera::open_camera(with...); };
+  const auto open_pose = [](const auto&... with) { return pose::open_pose_source(with...); };
   const auto open_detector = [](const auto&... with) { return landmarks::open_detector(with...); };
   EXPECT_THAT(complaint_with("camera", open_camera), names("camera"));
   EXPECT_THAT(complaint_with("camera_timestamps.npy", open_camera), names("camera_timestamps.npy"));
-  EXPECT_THAT(complaint_with("joints_left.npy", pose::open_pose_source), names("joints_left.npy"));
+  EXPECT_THAT(complaint_with("joints_left.npy", open_pose), names("joints_left.npy"));
   EXPECT_THAT(complaint_with("landmarks_left.npy", open_detector), names("landmarks_left.npy"));
 }
 

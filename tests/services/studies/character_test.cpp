@@ -163,12 +163,12 @@ StudyTable played_log(double baseline_s, double corrected_s) {
   for (const auto& session : character_sessions(1, 6)) {
     const double mean_s = session.is_corrected ? corrected_s : baseline_s;
     for (int round = 1; round <= 4; ++round)
-      log.rows.push_back(line_of(1, session, round,
+      log.rows.push_back(line_of(CharacterPlayer{}, session, round,
                                  {.palm = 'A',
                                   .asked = 1,
                                   .picked = round == 4 && !session.is_corrected ? 2u : 1u,
                                   .seconds = mean_s + 0.1 * round + 0.01 * session.number}));
-    log.rows.push_back(line_of(1, session, session.is_corrected ? 2 : 4));
+    log.rows.push_back(line_of(CharacterPlayer{}, session, session.is_corrected ? 2 : 4));
   }
   return log;
 }
@@ -194,9 +194,9 @@ TEST(CharacterAnalysis, ASessionThatWasLeftDoesNotCountAndOneThatWasBegunAnewCou
   ASSERT_TRUE(whole);
   // Three rounds of the first test session, very slow, before it was begun anew; and one that was
   // left at the end.
-  const auto first = std::ranges::find(log.rows, "test", [](const auto& row) { return row[2]; });
+  const auto first = std::ranges::find(log.rows, "test", [](const auto& row) { return row[4]; });
   std::vector<CsvRow> left(first, first + 3);
-  for (auto& row : left) row[10] = "99";
+  for (auto& row : left) row[12] = "99";
   log.rows.insert(first, left.begin(), left.end());
   log.rows.insert(log.rows.end(), left.begin(), left.end());
   const auto again = analyse_characters({log});
@@ -204,10 +204,34 @@ TEST(CharacterAnalysis, ASessionThatWasLeftDoesNotCountAndOneThatWasBegunAnewCou
   EXPECT_EQ(to_json(*again), to_json(*whole));
 }
 
+TEST(CharacterAnalysis, ALogOfBeforeSeedAndHandCountsTheSame) {
+  const auto log = played_log(3, 2);
+  auto earlier = log;
+  earlier.columns = {"subject", "session", "phase",  "condition", "face",    "round",
+                     "palm",    "asked",   "picked", "correct",   "seconds", "difficulty"};
+  for (auto& row : earlier.rows) row.erase(row.begin() + 1, row.begin() + 3);
+  const auto findings = analyse_characters({earlier});
+  ASSERT_TRUE(findings) << findings.error().what;
+  EXPECT_EQ(to_json(*findings), to_json(*analyse_characters({log})));
+}
+
+TEST(CharacterLog, GoesOnWithTheSameSeedAndHandOnly) {
+  StudyTable log{.name = "log", .columns = character_columns(), .rows = {}};
+  const CharacterPlayer player{.subject = 3, .seed = 8, .hand = msg::Side::right};
+  EXPECT_TRUE(check_player(log, player));
+  log.rows.push_back(line_of(player, character_sessions(3, 6)[0], 1, {}));
+  EXPECT_EQ(log.rows[0][1], "8");
+  EXPECT_EQ(log.rows[0][2], "right");
+  EXPECT_TRUE(check_player(log, player));
+  EXPECT_THAT(check_player(log, {.subject = 3, .seed = 9, .hand = msg::Side::right}).error().what,
+              testing::HasSubstr("--seed 8 --hand right"));
+  EXPECT_FALSE(check_player(log, {.subject = 3, .seed = 8, .hand = msg::Side::left}));
+}
+
 TEST(CharacterAnalysis, WhatIsNoLogIsNamed) {
   EXPECT_FALSE(analyse_characters({}));
   auto log = played_log(3, 2);
-  log.rows[20][10] = "soon";
+  log.rows[20][12] = "soon";
   EXPECT_THAT(analyse_characters({log}).error().what, testing::HasSubstr("'soon'"));
   log.columns = {"a"};
   EXPECT_THAT(analyse_characters({log}).error().what, testing::HasSubstr("no log of this game"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/studies/pose/pose.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -11,6 +12,7 @@
 #include "services/studies/pose/game.hpp"
 #include "services/studies/pose/picture.hpp"
 #include "services/studies/pose/run.hpp"
+#include "services/studies/pose/sessions.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/studies/scripted_hand.hpp"
 
@@ -135,6 +137,58 @@ TEST(PoseReport, HasTheSessionsAndTheRangeOfEachJoint) {
   EXPECT_FALSE(pose_report({log}));
   log.columns = {"a"};
   EXPECT_FALSE(pose_report({log}));
+}
+
+/// A log of so many sessions, in which the joints bend farther each time.
+StudyTable log_of_sessions(int count) {
+  StudyTable log{.name = "log", .columns = pose_columns(), .rows = {}};
+  for (int s = 0; s < count; ++s) {
+    const auto time = fmt::format("2026-11-{:02}T09:{:02}:05Z", 1 + s / 2, s);
+    log.rows.push_back({"7", time, "pose", "fist", fmt::format("{}", 9.5 - 0.2 * s), ""});
+    for (std::size_t joint = 0; joint < kFlexions; ++joint)
+      log.rows.push_back({"7", time, "range", flexion_name(joint), fmt::format("{}", 12 - s / 2),
+                          fmt::format("{}", 40 + 2 * s + 2 * static_cast<int>(joint))});
+  }
+  return log;
+}
+
+TEST(PosePdf, HasAPageForEachTwentySessionsOfAPerson) {
+  const auto pages_of = [](const std::vector<StudyTable>& logs) {
+    const auto pdf = pose_pdf(logs);
+    EXPECT_TRUE(pdf);
+    EXPECT_TRUE(pdf->starts_with("%PDF-"));
+    EXPECT_NE(pdf->find("%%EOF"), pdf->npos);
+    int pages = 0;
+    for (std::size_t at = 0; (at = pdf->find("/Type /Page ", at)) != pdf->npos; ++at) ++pages;
+    return pages;
+  };
+  EXPECT_EQ(pages_of({log_of_sessions(1)}), 1);
+  EXPECT_EQ(pages_of({log_of_sessions(20), log_of_sessions(21)}), 3);
+  auto wrong = log_of_sessions(2);
+  wrong.rows[1][4] = "wide";
+  EXPECT_FALSE(pose_pdf({wrong}));
+}
+
+TEST(PosePdf, ABarIsAsHighAsTheRangeOfItsJoint) {
+  constexpr int kScale = 2;
+  const auto page_of = [](int sessions) {
+    preview::Canvas page(595 * kScale, 842 * kScale, preview::Colour::of(0xffffff), kScale);
+    const auto all = pose_sessions(log_of_sessions(sessions));
+    EXPECT_TRUE(all);
+    draw_pose_page(page, "7", *all, 1);
+    return page.picture();
+  };
+  const auto blue = [](const renderer::Texture& page) {
+    return std::ranges::count(page.pixels(), 0xffc47312u);
+  };
+  // The ranges of the first six sessions grow; six bars are as wide as one.
+  const auto one = blue(page_of(1)), six = blue(page_of(6));
+  EXPECT_GT(one, 14 * 60);
+  EXPECT_GT(six, 6 * one);
+  EXPECT_LT(six, 8 * one);
+  const char* folder = std::getenv("HANDCAST_PICTURES");
+  EXPECT_TRUE(!folder ||
+              renderer::write_png(std::string(folder) + "/pose_page.png", page_of(15).view()));
 }
 
 TEST(PosePictures, BonesAreGreenWhereTheyMatchAndRedWhereNot) {

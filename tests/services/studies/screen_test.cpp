@@ -1,54 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The study on a screen: a real X server, a real window, and a simulated subject.
-#include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
-#include <thread>
-
-#include "services/studies/base/study_table.hpp"
-#include "tests/display_server.hpp"
-#include "tests/scratch.hpp"
+#include "tests/services/studies/study_on_screen.hpp"
 
 namespace handcast::study {
 namespace {
 
-using namespace std::chrono_literals;
-
-class Screen : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!display_) GTEST_SKIP() << test::DisplayServer::why();
-  }
-  /// Begins the study; its process is killed after `most`.
-  int study(std::chrono::seconds most, const std::string& arguments = "") const {
-    const auto command = fmt::format(
-        "exec timeout -s KILL {} {}/handcast-study jnd {} --answers-by-model --window --size "
-        "320x240 "
-        "--px-per-mm 0.9 --interval-s 0.2 --rate-hz 30 {} >{}/out 2>&1",
-        most.count(), std::getenv("HANDCAST_BIN"), scratch_.path().string(), arguments,
-        scratch_.path().string());
-    return std::system(command.c_str());
-  }
-  StudyTable log() const {
-    return read_study_table(scratch_.path() / "subject-01.csv").value_or(StudyTable());
-  }
-  std::string said() const {
-    std::ifstream file(scratch_.path() / "out");
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  test::DisplayServer display_;
-  test::Scratch scratch_;
-};
-
 TEST_F(Screen, AStudyThatIsKilledGoesOnWhereItWasAndHasTheTimesOfAllPictures) {
-  study(12s);
+  study_until(3);
   const auto first = log();
-  ASSERT_GT(first.rows.size(), 3u) << said();
-  study(12s);
+  ASSERT_GE(first.rows.size(), 3u) << said();
+  study_until(first.rows.size() + 3);
   const auto second = log();
-  ASSERT_GT(second.rows.size(), first.rows.size());
+  ASSERT_GE(second.rows.size(), first.rows.size() + 3) << said();
   for (std::size_t row = 0; row < first.rows.size(); ++row)
     EXPECT_EQ(second.rows[row], first.rows[row]);
   const auto light = read_study_table(scratch_.path() / "subject-01.light.csv");
@@ -66,11 +31,12 @@ TEST_F(Screen, AStudyThatIsKilledGoesOnWhereItWasAndHasTheTimesOfAllPictures) {
 }
 
 TEST_F(Screen, AnotherSeedDoesNotGoOnInTheSameLog) {
-  study(8s);
+  study_until(1);
   ASSERT_GT(log().rows.size(), 0u) << said();
-  const int status = study(20s, "--seed 2");
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 100);
+  Running study(command("--answers-by-model --seed 2"));
+  for (const auto end = Deadline::in(kPatience); !study.exit_code() && !end.passed();)
+    std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(study.exit_code(), 100) << said();
 }
 
 TEST(StudyWithoutAScreen, IsAnErrorWithASentence) {

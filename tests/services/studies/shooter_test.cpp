@@ -15,7 +15,10 @@ namespace {
 class Shooter : public testing::Test {
  protected:
   void play(double seconds, float steer, bool is_seen = true) {
-    for (double s = 0; s < seconds; s += kStep_s) game_.step(kStep_s, steer, is_seen);
+    for (double s = 0; s < seconds; s += kStep_s) step(steer, is_seen);
+  }
+  void step(float steer, bool is_seen = true) {
+    game_.step(kStep_s, std::array{ShooterPlayer{steer, is_seen}});
   }
   const ShooterScene& scene() const { return game_.scene(); }
   ShooterGame game_{4};
@@ -49,7 +52,7 @@ TEST_F(Shooter, AliensThatAreHitGiveScore) {
 TEST_F(Shooter, APlayerWhoFollowsTheAliensClearsTheWave) {
   for (double s = 0; s < 90 && scene().wave < 2; s += kStep_s) {
     const float target = scene().aliens.empty() ? 0 : scene().aliens.back().at_mm.x;
-    game_.step(kStep_s, target / ShooterScene::kHalfWidth_mm, true);
+    step(target / ShooterScene::kHalfWidth_mm);
   }
   EXPECT_GE(scene().wave, 2);
   EXPECT_GE(scene().score, 300);
@@ -58,7 +61,7 @@ TEST_F(Shooter, APlayerWhoFollowsTheAliensClearsTheWave) {
 TEST_F(Shooter, WhoDoesNothingLosesAllLivesAndTheNextGameBeginsByItself) {
   bool was_over = false, began_again = false;
   for (double s = 0; s < 300 && !began_again; s += kStep_s) {
-    game_.step(kStep_s, 1, true);
+    step(1);
     was_over |= scene().lives == 0 && !scene().is_playing;
     began_again |= was_over && scene().is_playing && scene().lives == ShooterScene::kLives;
   }
@@ -67,11 +70,77 @@ TEST_F(Shooter, WhoDoesNothingLosesAllLivesAndTheNextGameBeginsByItself) {
 }
 
 TEST_F(Shooter, EndlessPlayStaysBounded) {
-  for (double s = 0; s < 600; s += kStep_s)
-    game_.step(kStep_s, static_cast<float>(std::sin(s)), true);
+  for (double s = 0; s < 600; s += kStep_s) step(static_cast<float>(std::sin(s)));
   EXPECT_LE(scene().shots_mm.size(), 10u);
   EXPECT_LE(scene().bombs_mm.size(), 60u);
   EXPECT_LE(scene().bursts_mm.size(), 40u);
+}
+
+class TwoHands : public testing::Test {
+ protected:
+  /// Steers both ships to their last aliens, if they are to be hit.
+  void play(double seconds, std::array<bool, 2> hits, std::array<bool, 2> seen = {true, true}) {
+    for (double s = 0; s < seconds; s += kStep_s) {
+      std::array<ShooterPlayer, 2> players;
+      for (std::size_t hand = 0; hand < 2; ++hand) {
+        const auto& aliens = game_.scene(hand).aliens;
+        const float target_mm = hits[hand] && !aliens.empty() ? aliens.back().at_mm.x : -30;
+        players[hand] = {target_mm / ShooterScene::kHalfWidth_mm, seen[hand]};
+      }
+      events_ = game_.step(kStep_s, players);
+      has_shot_ |= events_.has_shot;
+      has_hit_ |= events_.has_hit;
+      has_lost_ |= events_.has_lost;
+    }
+  }
+  std::size_t aliens() const { return game_.scene(0).aliens.size() + game_.scene(1).aliens.size(); }
+
+  ShooterGame game_{4, 2};
+  ShooterEvents events_;
+  bool has_shot_ = false, has_hit_ = false, has_lost_ = false;
+};
+
+TEST_F(TwoHands, HaveOneScoreOneSetOfLivesAndOneWave) {
+  play(0.1, {false, false});
+  EXPECT_EQ(aliens(), 30u);
+  play(4, {true, false});
+  EXPECT_GT(game_.scene(0).score, 0);
+  EXPECT_EQ(game_.scene(1).score, game_.scene(0).score);
+  for (int s = 0; s < 120 && game_.scene(0).lives == ShooterScene::kLives; ++s)
+    play(1, {true, false});
+  EXPECT_LT(game_.scene(0).lives, ShooterScene::kLives);
+  EXPECT_EQ(game_.scene(1).lives, game_.scene(0).lives);
+}
+
+TEST_F(TwoHands, WhoHasNoAliensLeftGetsHalfOfThoseOfTheOther) {
+  for (int s = 0; s < 60 * 60 && game_.scene(0).aliens.size() != 1; ++s)
+    play(kStep_s, {true, false}, {true, false});
+  ASSERT_EQ(game_.scene(0).aliens.size(), 1u);
+  EXPECT_EQ(game_.scene(1).aliens.size(), 15u) << "the other hand was away";
+  for (int s = 0; s < 60 * 60 && game_.scene(0).aliens.size() == 1; ++s)
+    play(kStep_s, {true, false}, {true, false});
+  EXPECT_EQ(game_.scene(0).aliens.size(), 7u);
+  EXPECT_EQ(game_.scene(1).aliens.size(), 8u);
+  EXPECT_EQ(game_.scene(0).wave, 1);
+}
+
+TEST_F(TwoHands, TogetherTheyClearTheWave) {
+  for (int s = 0; s < 120 && game_.scene(0).wave < 2; ++s) play(1, {true, true});
+  EXPECT_GE(game_.scene(0).wave, 2);
+  EXPECT_EQ(game_.scene(1).wave, game_.scene(0).wave);
+}
+
+TEST_F(TwoHands, AHandThatIsAwayPausesAlone) {
+  play(1, {false, false});
+  const auto here = game_.scene(0).aliens[0].at_mm, away = game_.scene(1).aliens[0].at_mm;
+  play(1, {false, false}, {true, false});
+  EXPECT_NE(game_.scene(0).aliens[0].at_mm, here);
+  EXPECT_EQ(game_.scene(1).aliens[0].at_mm, away);
+}
+
+TEST_F(TwoHands, ShotsHitsAndLossesAreTold) {
+  for (int s = 0; s < 200 && !has_lost_; ++s) play(1, {true, false});
+  EXPECT_TRUE(has_shot_ && has_hit_ && has_lost_);
 }
 
 TEST(Tilt, TurningAboutTheForearmSteersAndMovingDoesNot) {
@@ -96,7 +165,7 @@ TEST(ShooterPictures, TheGameTheScoreAndTheLivesAreOnTheHand) {
   ASSERT_TRUE(mesh);
   ShooterPicture picture(*mesh, 1024, 640);
   ShooterGame game(4);
-  for (int step = 0; step < 200; ++step) game.step(kStep_s, 0.3f, true);
+  for (int step = 0; step < 200; ++step) game.step(kStep_s, std::array{ShooterPlayer{0.3f, true}});
   const auto drawn = picture.draw(game.scene(), Face::palm, 3);
   const renderer::Texture before = [&] {
     renderer::Texture copy(drawn.width, drawn.height);

@@ -187,8 +187,7 @@ TEST(Fingerprint, TheDeskDependsOnAllThatItLetsPeopleChange) {
 }
 
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
-  expect_reads("observer", {},
-               truth_and({"observer", "camera.backend", "camera2.backend", "pose.backend"}),
+  expect_reads("observer", {}, truth_and({"observer", "camera.backend"}),
                {"observer.enabled", "observer.process.standby"});
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/tools/preview/canvas/canvas.hpp"
 
+#include <cairo-pdf.h>
 #include <cairo.h>
 
 #include <algorithm>
@@ -76,15 +77,19 @@ Surface surface_of(renderer::View<const std::uint32_t> rgba) {
 
 class Canvas::Cairo {
  public:
-  Cairo(int width, int height)
-      : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height),
-                 cairo_surface_destroy),
-        context_(cairo_create(surface_.get()), cairo_destroy) {}
+  Cairo(Surface surface, double width, double height)
+      : surface_(std::move(surface)),
+        context_(cairo_create(surface_.get()), cairo_destroy),
+        width_(width),
+        height_(height) {
+    cairo_set_line_join(get(), CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_cap(get(), CAIRO_LINE_CAP_ROUND);
+  }
 
   cairo_t* get() const { return context_.get(); }
   cairo_surface_t* surface() const { return surface_.get(); }
-  int width_px() const { return cairo_image_surface_get_width(surface()); }
-  int height_px() const { return cairo_image_surface_get_height(surface()); }
+  double width() const { return width_; }
+  double height() const { return height_; }
   double scale() const {
     cairo_matrix_t matrix;
     cairo_get_matrix(get(), &matrix);
@@ -112,21 +117,24 @@ class Canvas::Cairo {
  private:
   Surface surface_;
   std::unique_ptr<cairo_t, decltype(&cairo_destroy)> context_;
+  double width_, height_;
 };
 
 Canvas::Canvas(int width_px, int height_px, Colour background, double scale)
-    : cairo_(std::make_unique<Cairo>(width_px, height_px)) {
+    : Canvas(std::make_unique<Cairo>(
+          Surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px),
+                  cairo_surface_destroy),
+          width_px, height_px)) {
   cairo_->use(background);
   cairo_paint(cairo_->get());
   cairo_scale(cairo_->get(), scale, scale);
-  cairo_set_line_join(cairo_->get(), CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(cairo_->get(), CAIRO_LINE_CAP_ROUND);
 }
 
+Canvas::Canvas(std::unique_ptr<Cairo> cairo) : cairo_(std::move(cairo)) {}
 Canvas::~Canvas() = default;
 
-double Canvas::width() const { return cairo_->width_px() / cairo_->scale(); }
-double Canvas::height() const { return cairo_->height_px() / cairo_->scale(); }
+double Canvas::width() const { return cairo_->width() / cairo_->scale(); }
+double Canvas::height() const { return cairo_->height() / cairo_->scale(); }
 
 void Canvas::fill(const Box& box, Colour colour, double radius_px) {
   if (!is_finite(box) || box.width <= 0 || box.height <= 0) return;
@@ -235,7 +243,7 @@ void Canvas::unclip() { cairo_reset_clip(cairo_->get()); }
 
 renderer::Texture Canvas::picture() const {
   cairo_surface_flush(cairo_->surface());
-  renderer::Texture picture(cairo_->width_px(), cairo_->height_px());
+  renderer::Texture picture(static_cast<int>(cairo_->width()), static_cast<int>(cairo_->height()));
   const auto* data = cairo_image_surface_get_data(cairo_->surface());
   if (!data) return picture;
   const int stride = cairo_image_surface_get_stride(cairo_->surface());
@@ -247,6 +255,29 @@ renderer::Texture Canvas::picture() const {
       out[x] = 0xff000000u | (in[x] & 0x0000ff00u) | (in[x] >> 16 & 255) | (in[x] & 255) << 16;
   }
   return picture;
+}
+
+PaperCanvas::PaperCanvas(double width_pt, double height_pt, const std::string& title)
+    : Canvas(nullptr), file_(std::make_unique<std::string>()) {
+  constexpr auto append = [](void* file, const unsigned char* bytes, unsigned int count) {
+    static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  Surface surface(cairo_pdf_surface_create_for_stream(append, file_.get(), width_pt, height_pt),
+                  cairo_surface_destroy);
+  cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, title.c_str());
+  cairo_ = std::make_unique<Cairo>(std::move(surface), width_pt, height_pt);
+}
+
+PaperCanvas::~PaperCanvas() {
+  cairo_.reset();  // writes the rest of the file
+}
+
+void PaperCanvas::end_page() { cairo_show_page(cairo_->get()); }
+
+std::string PaperCanvas::finish() {
+  cairo_surface_finish(cairo_->surface());
+  return std::move(*file_);
 }
 
 }  // namespace handcast::preview

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -60,7 +61,7 @@ class Canvas {
   /// A canvas of one colour. Both sizes at least 1. All positions and sizes that are given to its
   /// functions are multiplied by `scale`.
   Canvas(int width_px, int height_px, Colour background, double scale = 1);
-  ~Canvas();
+  virtual ~Canvas();
   Canvas(const Canvas&) = delete;
   Canvas& operator=(const Canvas&) = delete;
 
@@ -98,12 +99,28 @@ class Canvas {
   void unclip();
   /// @}
 
-  /// The picture so far, RGBA8, opaque.
+  /// The picture so far, RGBA8, opaque. Not of a PaperCanvas.
   renderer::Texture picture() const;
 
- private:
+ protected:
   class Cairo;
+  explicit Canvas(std::unique_ptr<Cairo> cairo);
   std::unique_ptr<Cairo> cairo_;
+};
+
+/// White pages of a PDF file that are drawn on one after another. Positions in points, 1/72 inch.
+class PaperCanvas : public Canvas {
+ public:
+  PaperCanvas(double width_pt, double height_pt, const std::string& title);
+  ~PaperCanvas() override;
+
+  /// Ends a page; what is drawn next is on the next one.
+  void end_page();
+  /// The file. Nothing may be drawn afterwards.
+  std::string finish();
+
+ private:
+  std::unique_ptr<std::string> file_;
 };
 
 }  // namespace handcast::preview

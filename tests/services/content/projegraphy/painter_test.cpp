@@ -121,5 +121,25 @@ TEST(Painter, AllAnimalsAreSeenOnTheHandsThatHoldThem) {
   }
 }
 
+TEST(Painter, HandsThatLookLikeNothingGetSoftWavesInNoHurry) {
+  const auto picture = calm_picture();
+  ASSERT_EQ(picture.width(), kPictureSide_px);
+  const auto differ = [](std::uint32_t a, std::uint32_t b) {
+    int most = 0;
+    for (const int shift : {0, 8, 16})
+      most = std::max(most, std::abs(static_cast<int>(a >> shift & 0xff) -
+                                     static_cast<int>(b >> shift & 0xff)));
+    return most;
+  };
+  for (int y = 1; y < picture.height(); ++y)
+    for (int x = 1; x < picture.width(); ++x) {
+      ASSERT_LE(differ(picture.at(x, y), picture.at(x - 1, y)), 3);
+      ASSERT_LE(differ(picture.at(x, y), picture.at(x, y - 1)), 3);
+      ASSERT_GT(picture.at(x, y) >> 8 & 0xff, 40u) << "the hand is lit";
+    }
+  const char* folder = std::getenv("HANDCAST_PICTURES");
+  EXPECT_TRUE(!folder || renderer::write_png(std::string(folder) + "/calm.png", picture.view()));
+}
+
 }  // namespace
 }  // namespace handcast::projegraphy

@@ -77,8 +77,9 @@ class LocalServer {
       if (got <= 0) break;
       text.append(buffer, static_cast<std::size_t>(got));
       const auto end = text.find("\r\n\r\n"), at = text.find("Content-Length: ");
-      if (end != text.npos && at < end)
-        whole = end + 4 + static_cast<std::size_t>(std::atoi(text.c_str() + at + 16));
+      if (end != text.npos)
+        whole =
+            end + 4 + static_cast<std::size_t>(at < end ? std::atoi(text.c_str() + at + 16) : 0);
     }
     return text;
   }
@@ -140,6 +141,7 @@ TEST_F(RemoteTest, OnlyOurAnimalsInTheRightFormAreTaken) {
   const std::vector<std::string> answers{
       chat("owl"),
       chat(R"({"animal": "unicorn"})"),
+      chat(R"({"animal": "None."})"),
       chat(R"({"animal": ["owl"]})"),
       chat(R"(["owl"])"),
       chat(R"({"animal": "owlowlowlowlowlowlowlowlowlowlowl"})"),
@@ -281,6 +283,135 @@ TEST_F(RemoteTest, WhatIsBuiltInTakesOver) {
   EXPECT_EQ(helped->recognised()->animal, projegraphy::animal_of("cat"));
   EXPECT_EQ(helped->picture().pixels(), alone->picture().pixels());
   EXPECT_EQ(wrong.requests(), 2);
+}
+
+TEST_F(RemoteTest, HandsThatLookLikeNoAnimalGetACalmPicture) {
+  const LocalServer server([](const std::string&) { return chat(R"({"animal": "none"})"); });
+  servers_.recogniser = servers_.painter = server.url();
+  Studio studio(
+      {&content::made_hand(content::Side::left), &content::made_hand(content::Side::right)});
+  const auto order = studio.order(silhouette_, servers_);
+  order->wait();
+  ASSERT_TRUE(order->recognised());
+  EXPECT_LT(order->recognised()->animal, 0);
+  EXPECT_EQ(order->picture().pixels(), calm_picture().pixels());
+  EXPECT_EQ(server.requests(), 1) << "the painter is not asked";
+}
+
+/// A ComfyUI whose job is done when it is asked for the third time.
+class ComfyUiTest : public RemoteTest {
+ protected:
+  ComfyUiTest() {
+    renderer::Image<std::uint8_t> grey(64, 64, 200);
+    grey.at(0, 0) = 7;
+    picture_ = *renderer::png_of(std::as_const(grey).view());
+    servers_.workflow =
+        R"({"3": {"class_type": "KSampler", "inputs": {"positive": ["6", 0]}},
+            "6": {"class_type": "CLIPTextEncode", "inputs": {"text": "HANDCAST_PROMPT, soft"}},
+            "10": {"class_type": "LoadImage", "inputs": {"image": "HANDCAST_MASK"}}})";
+  }
+  std::string answer(const std::string& request) {
+    if (request.starts_with("POST /upload/image ")) return upload_ = request, uploaded_;
+    if (request.starts_with("POST /prompt ")) return prompt_ = request, queued_;
+    if (request.starts_with("GET /history/job-1 "))
+      return ++asked_ < 3 ? http(200, "{}") : history_;
+    if (request.starts_with("GET /view?filename=out%201.png&subfolder=&type=output "))
+      return http(200, picture_);
+    return http(404, "");
+  }
+  /// The error of the server, as it is now.
+  Error error() {
+    const LocalServer server([this](const std::string& request) { return answer(request); });
+    servers_.painter = server.url();
+    const auto picture = Remote().picture_of(servers_, silhouette_, "owl", {});
+    return picture ? Error{Errc::timeout, "no error"} : picture.error();
+  }
+
+  std::string upload_, prompt_, picture_;
+  int asked_ = 0;
+  std::string uploaded_ =
+                  http(200, R"({"name": "handcast.png", "subfolder": "", "type": "input"})"),
+              queued_ = http(200, R"({"prompt_id": "job-1", "number": 4, "node_errors": {}})"),
+              history_ = http(200, R"({"job-1": {"outputs": {"8": {"text": ["a"]}, "9": {"images":
+                [{"filename": "out 1.png", "subfolder": "", "type": "output"}]}}}})");
+};
+
+TEST_F(ComfyUiTest, PaintsByAWorkflowInTheShapeOfTheMask) {
+  const LocalServer server([this](const std::string& request) { return answer(request); });
+  servers_.painter = server.url() + "/";
+  const auto picture = remote_.picture_of(servers_, silhouette_, "owl", {});
+  ASSERT_TRUE(picture) << picture.error().what;
+  EXPECT_EQ(picture->width(), kPictureSide_px);
+  EXPECT_EQ(picture->at(0, 0), 0xff070707u);
+  EXPECT_NE(upload_.find("Content-Type: multipart/form-data; boundary="), std::string::npos);
+  EXPECT_NE(upload_.find("\x89PNG"), std::string::npos);
+  EXPECT_NE(prompt_.find(R"("text":"A cute owl, centred, plain background, soft")"),
+            std::string::npos)
+      << prompt_;
+  EXPECT_NE(prompt_.find(R"("image":"handcast.png")"), std::string::npos);
+  EXPECT_EQ(asked_, 3);
+}
+
+TEST_F(ComfyUiTest, OneThatDoesNotComeToAnEndIsLeftAlone) {
+  history_ = http(200, "{}");
+  servers_.patience_s = 0.6;
+  const LocalServer server([this](const std::string& request) { return answer(request); });
+  servers_.painter = server.url();
+  const auto picture = remote_.picture_of(servers_, silhouette_, "owl", {});
+  ASSERT_FALSE(picture);
+  EXPECT_EQ(picture.error().code, Errc::timeout) << picture.error().what;
+  const int requests = server.requests();
+  EXPECT_FALSE(remote_.picture_of(servers_, silhouette_, "owl", {}));
+  EXPECT_EQ(server.requests(), requests);
+}
+
+TEST_F(ComfyUiTest, WrongAndHugeAnswersAreErrorsAndNoPictures) {
+  const auto with = [this](std::string& answer, const std::string& wrong) {
+    const auto right = std::exchange(answer, wrong);
+    asked_ = 0;
+    const auto found = error();
+    answer = right;
+    return found;
+  };
+  for (const char* body : {"", "no", "[]", R"({"name": 7})"})
+    EXPECT_EQ(with(uploaded_, http(200, body)).code, Errc::bad_data) << body;
+  for (const char* body :
+       {"", "{}", R"({"prompt_id": "../../view"})", R"({"prompt_id": ["job-1"]})"})
+    EXPECT_EQ(with(queued_, http(200, body)).code, Errc::bad_data) << body;
+  for (const char* body :
+       {"[]", R"({"job-1": {}})", R"({"job-1": {"outputs": {}}})",
+        R"({"job-1": {"outputs": {"9": {"images": [{"filename": 7}]}}}})", R"({"job-1": [7]})"})
+    EXPECT_EQ(with(history_, http(200, body)).code, Errc::bad_data) << body;
+  EXPECT_EQ(with(history_, http(200, std::string(4 << 20, ' '))).code, Errc::bad_data);
+  EXPECT_EQ(with(picture_, "GIF89a").code, Errc::bad_data);
+  EXPECT_EQ(with(picture_, std::string(30 << 20, ' ')).code, Errc::bad_data);
+  EXPECT_EQ(with(queued_, http(400, "the workflow is wrong")).code, Errc::bad_data);
+}
+
+TEST_F(ComfyUiTest, OneThatIsSilentOrAbsentIsGivenUp) {
+  uploaded_ = "";
+  servers_.patience_s = 0.2;
+  servers_.tries = 1;
+  EXPECT_EQ(error().code, Errc::timeout);
+  servers_.painter = "http://127.0.0.1:1";
+  EXPECT_EQ(remote_.picture_of(servers_, silhouette_, "owl", {}).error().code, Errc::unavailable);
+}
+
+TEST(Workflow, IsOneForTheApiWithPlacesForPromptAndMask) {
+  const test::Scratch scratch;
+  const auto file = scratch.path() / "workflow.json";
+  const auto fault_of = [&](const std::string& text) {
+    std::ofstream(file) << text;
+    const auto workflow = read_workflow(file.string());
+    return workflow ? "" : workflow.error().what;
+  };
+  EXPECT_EQ(fault_of(R"({"1": {"class_type": "A", "inputs": {"t": "HANDCAST_PROMPT"}},
+                         "2": {"class_type": "B", "inputs": {"image": "HANDCAST_MASK"}}})"),
+            "");
+  for (const char* wrong : {"", "{}", "[]", R"({"1": {"class_type": "HANDCAST_PROMPT"}})",
+                            R"({"nodes": [{"type": "HANDCAST_PROMPT HANDCAST_MASK"}]})"})
+    EXPECT_NE(fault_of(wrong).find("export it for the API"), std::string::npos) << wrong;
+  EXPECT_FALSE(read_workflow("/nowhere/workflow.json"));
 }
 
 // A silent server must not hold up the end of the program.

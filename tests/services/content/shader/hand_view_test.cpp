@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/hand/hand_mesh.hpp"
+#include "services/content/surface_map.hpp"
 #include "tests/services/content/shader/shader_test.hpp"
 
 namespace handcast::test {
@@ -75,6 +76,28 @@ TEST_F(HandsInShaders, JointsLieOnTheMap) {
     }
     gl_FragColor = vec4(most / 255.0, 0, 0, 1); })");
   EXPECT_LT(level(colour(source), 0), 8) << "mm";
+}
+
+TEST_F(HandsInShaders, TheBoneOfATexelIsThatOfItsLargestWeight) {
+  const auto source = isf("", R"(void main() {
+    gl_FragColor = vec4(texture(hand_bone, isf_FragNormCoord).x / 255.0, 0, 0, 1); })");
+  const auto drawn = draw(*source);
+  int wrong = 0, all = 0;
+  for (const auto& texel : surface_map_of(left_, drawn.width(), drawn.height())->texels()) {
+    std::map<int, float> weights;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 4; ++k)
+        weights[left_.joints[texel.corners[corner]][k]] +=
+            texel.parts[corner] * left_.weights[texel.corners[corner]][k];
+    const auto weight = [](const auto& each) { return each.second; };
+    const int joint = std::ranges::max_element(weights, {}, weight)->first;
+    const int told = level(drawn.pixels()[texel.index], 0);
+    // Two joints may be equally strong.
+    wrong += std::abs(weights[joint] - weights[told]) > 1e-4f;
+    ++all;
+  }
+  EXPECT_GT(all, 1000);
+  EXPECT_EQ(wrong, 0);
 }
 
 TEST_F(HandsInShaders, MapsOfTheMomentNeedTheSurface) {

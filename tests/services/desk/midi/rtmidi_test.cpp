@@ -1,32 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface below the real library: against an ALSA sequencer if the kernel has one, and against
 // a JACK server of its own, which has no sound card.
-#include <RtMidi.h>
-#include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <mutex>
 #include <thread>
 
 #include "ipc/base/clock.hpp"
 #include "services/desk/midi/midi.hpp"
+#include "tests/midi_devices.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/desk/table_panel.hpp"
-
-extern char** environ;
 
 namespace handcast::desk {
 namespace {
 
 using namespace std::chrono_literals;
-using Message = std::vector<unsigned char>;
+using test::EmulatedController;
 
 template <class Condition>
 bool comes_true(Condition condition) {
@@ -34,34 +24,6 @@ bool comes_true(Condition condition) {
     if (condition()) return true;
   return false;
 }
-
-/// A controller with motors: virtual ports of this process.
-class EmulatedController {
- public:
-  explicit EmulatedController(RtMidi::Api api)
-      : out_(api, "Emulated Fader"), in_(api, "Emulated Fader") {
-    in_.setCallback(
-        [](double, Message* message, void* self) {
-          auto& controller = *static_cast<EmulatedController*>(self);
-          const std::lock_guard lock(controller.mutex_);
-          controller.shown_.push_back(*message);
-        },
-        this);
-    out_.openVirtualPort("moved");
-    in_.openVirtualPort("shown");
-  }
-  void move(const Message& message) { out_.sendMessage(&message); }
-  bool has_shown(const Message& message) {
-    const std::lock_guard lock(mutex_);
-    return std::ranges::find(shown_, message) != shown_.end();
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<Message> shown_;
-  RtMidiOut out_;
-  RtMidiIn in_;
-};
 
 /// Learns a fader, moves it, is moved, is pulled and plugged in again.
 void exercise(RtMidi::Api api, const std::string& device) {
@@ -101,26 +63,15 @@ TEST(RtMidi, AnAlsaControllerIsLearnedMovedAndPulled) {
 }
 
 TEST(RtMidi, AJackControllerIsLearnedMovedAndPulled) {
-  if (std::system("command -v jackd >/dev/null") != 0)
-    GTEST_SKIP() << "jackd is not installed (jackd1)";
-  const auto name = "handcast-test-" + std::to_string(::getpid());
-  ::setenv("JACK_DEFAULT_SERVER", name.c_str(), 1);
-  std::string command = "exec timeout 90 jackd -n " + name + " -r -d dummy -p 256 >/dev/null 2>&1";
-  char* const arguments[] = {const_cast<char*>("sh"), const_cast<char*>("-c"), command.data(),
-                             nullptr};
-  pid_t server = 0;
-  ASSERT_EQ(::posix_spawn(&server, "/bin/sh", nullptr, nullptr, arguments, environ), 0);
-  const auto socket = fmt::format("/dev/shm/jack-{}/{}/jack_0", ::getuid(), name);
-  ASSERT_TRUE(comes_true([&] { return std::filesystem::exists(socket); })) << socket;
+  const test::JackServer server;
+  if (!server) GTEST_SKIP() << test::JackServer::why();
   exercise(RtMidi::UNIX_JACK, "jack:Emulated Fader");
-  ::kill(server, SIGTERM);
-  ::waitpid(server, nullptr, 0);
 }
 
 TEST(RtMidi, AComputerWithoutADeviceSaysWhatThereIs) {
   const auto port = midi::open_port("no such device");
   ASSERT_FALSE(port);
-  EXPECT_THAT(port.error().what, testing::HasSubstr("desk.midi.device: "));
+  EXPECT_THAT(port.error().what, testing::HasSubstr("MIDI"));
 }
 
 }  // namespace

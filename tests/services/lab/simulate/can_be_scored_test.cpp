@@ -17,7 +17,9 @@ TEST(CanBeScored, ASensorThatDoesNotSeeTheTwinsHandIsRefusedWithWhatToAdd) {
         std::pair{"pose.backend=replay", "--set pose.backend=twin"},
         std::pair{"pose.second=none", "--set pose.second="},
         std::pair{"camera.backend=v4l2", "--set camera.backend=twin"},
-        std::pair{"landmarks.backend=replay", "--set landmarks.backend=twin"}}) {
+        std::pair{"landmarks.backend=replay", "--set landmarks.backend=twin"},
+        std::pair{"pose.backend=external", "--poses FILE"},
+        std::pair{"landmarks.backend=external", "--landmarks FILE"}}) {
     Options options = options_of("twin", 0.05);
     add_settings(options, {chosen});
     const auto done = run(options);
@@ -28,14 +30,24 @@ TEST(CanBeScored, ASensorThatDoesNotSeeTheTwinsHandIsRefusedWithWhatToAdd) {
   }
 }
 
+TEST(CanBeScored, ASensorWhoseResultsAreInAFileMayBeAny) {
+  Options options;
+  options.poses_file = "poses.csv";
+  EXPECT_TRUE(check_can_be_scored(rig_with({"pose.backend=leapc", "pose.second=none"}), options));
+  EXPECT_FALSE(check_can_be_scored(rig_with({"landmarks.backend=external"}), options));
+  options.landmarks_file = "landmarks.csv";
+  EXPECT_TRUE(check_can_be_scored(rig_with({"landmarks.backend=external"}), options));
+  EXPECT_FALSE(check_can_be_scored(rig_with({"camera.backend=v4l2"}), options));
+}
+
 TEST(CanBeScored, EachRigSaysAllThatIsToBeChanged) {
   const auto replay = config::load_rig(source_root() / "config/rigs/replay.toml");
   ASSERT_TRUE(replay);
   const auto refused = check_can_be_scored(*replay);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().what,
-              HasSubstr("add --set camera.backend=twin --set pose.backend=twin --set "
-                        "landmarks.backend=twin"));
+              HasSubstr("add --set camera.backend=twin --set landmarks.backend=twin --set "
+                        "pose.backend=twin"));
 }
 
 TEST(CanBeScored, PosesFromLandmarksOfTheTwinsCamerasAre) {

@@ -184,7 +184,8 @@ TEST(Leapc, ARecordingIsReportedAsItIsRead) {
   leap.motion = play;
   leap.rate_hz = 400;
   auto rig = leapc_rig();
-  const auto source = row_of_leapc().open(rig, calib::reference_rig(), now_ns() + to_ns(1h));
+  const auto source =
+      row_of_leapc().open(rig, calib::reference_rig(), Surroundings{now_ns() + to_ns(1h)});
   ASSERT_TRUE(source) << source.error().what;
   float farthest_mm = 0;
   double most_turned = 0;

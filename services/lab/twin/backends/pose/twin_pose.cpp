@@ -51,10 +51,10 @@ class TwinPose final : public PoseSource {
 
 Result<std::unique_ptr<PoseSource>> open_twin(const config::Rig& rig,
                                               const calib::Calibration& calibration,
-                                              const std::int64_t& epoch_ns) {
+                                              const Surroundings& around) {
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return fail_in("pose 'twin'", twin.error());
-  return std::make_unique<TwinPose>(std::move(*twin), epoch_ns);
+  return std::make_unique<TwinPose>(std::move(*twin), around.epoch_ns);
 }
 
 }  // namespace handcast::pose

@@ -7,7 +7,7 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/quote.hpp"
-#include "services/desk/midi/port.hpp"
+#include "services/desk/midi/port/port.hpp"
 
 namespace handcast::desk::midi {
 namespace {
@@ -45,13 +45,10 @@ class RtMidiPort final : public Port {
     const auto names = names_of(in_);
     const auto found = find_port(names, part_);
     // Also a JACK without a server looks like this.
-    if (names.empty())
-      return fail(Errc::unavailable, "desk.midi.device: there is no MIDI device at all");
+    if (names.empty()) return fail(Errc::unavailable, "there is no MIDI device at all");
     if (!found)
-      return fail(Errc::disconnected,
-                  fmt::format("desk.midi.device: there is no MIDI device {}; there are: {}; it is "
-                              "looked for every second",
-                              quote(part_), join(names, ", ")));
+      return fail(Errc::disconnected, fmt::format("there is no MIDI device {}; there are: {}",
+                                                  quote(part_), join(names, ", ")));
     name_ = names[*found];
     in_.setCallback([](double, std::vector<unsigned char>* message,
                        void* port) { static_cast<RtMidiPort*>(port)->take(*message); },
@@ -60,8 +57,7 @@ class RtMidiPort final : public Port {
     in_.openPort(*found, "in");
     if (!in_.isPortOpen())
       return fail(Errc::disconnected,
-                  fmt::format("desk.midi.device: {} cannot be opened; does another program use it?",
-                              quote(name_)));
+                  fmt::format("{} cannot be opened; does another program use it?", quote(name_)));
     if (const auto out = find_port(names_of(out_), part_)) out_.openPort(*out, "out");
     return {};
   }
@@ -115,9 +111,8 @@ Result<std::unique_ptr<Port>> open_port(std::string_view device) {
     if (auto opened = port->open(); !opened) return tl::make_unexpected(opened.error());
     return port;
   } catch (const RtMidiError& error) {
-    return fail(Errc::unavailable,
-                fmt::format("desk.midi.device: this computer has no MIDI by {} ({})",
-                            is_jack ? "JACK" : "ALSA", error.getMessage()));
+    return fail(Errc::unavailable, fmt::format("this computer has no MIDI by {} ({})",
+                                               is_jack ? "JACK" : "ALSA", error.getMessage()));
   }
 }
 
