@@ -10,6 +10,7 @@
 #include "renderer/content/textures.hpp"
 #include "renderer/correct/deform.hpp"
 #include "renderer/predict/plausible_pose.hpp"
+#include "renderer/skin/finger_bend.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -55,7 +56,9 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
     : side_(side),
       settings_(settings),
       calibration_(calibration),
-      states_{.reports = {.snaps = FingerSnaps(calibration)},
+      states_{.reports = {.snaps = FingerSnaps(calibration),
+                          .orientation_bias = OrientationBias(calibration),
+                          .landmark_offset = LandmarkOffset(calibration)},
               .motion = {.track = HandTrack(settings.predict, calibration),
                          .landmarks = LandmarkTrack(filter_of(settings), std::move(oracle)),
                          .estimate = HandEstimate(calibration),
@@ -125,15 +128,22 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
                         const msg::HandLandmarks& seen) {
   auto& [reports, motion, light, shape] = states_;
+  const bool is_alone = motion.landmarks.is_alone();
+  if (const auto pose = motion.track.recent_pose(origin_ns); pose && !is_alone) {
+    if (settings_.skin.turn) reports.orientation_bias.learn(origin_ns, *pose, seen);
+    if (settings_.filter.definitions)
+      reports.landmark_offset.learn(origin_ns, reports.orientation_bias.turned(*pose), seen);
+  }
   if (estimates()) {
     motion.estimate.detection(origin_ns, seen);
     motion.estimate.look_back(motion.track);
   }
   reports.has_sigmas =
       std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
-  reports.snaps.detection(origin_ns, seen);
-  if (!motion.landmarks.is_alone()) motion.ladder.detection(motion.track, origin_ns, seen);
-  motion.landmarks.detection(now_ns, origin_ns, seen, motion.track);
+  const auto as_tracked = reports.landmark_offset.as_tracked(seen);
+  reports.snaps.detection(origin_ns, as_tracked);
+  if (!is_alone) motion.ladder.detection(motion.track, origin_ns, as_tracked);
+  motion.landmarks.detection(now_ns, origin_ns, as_tracked, motion.track);
 }
 
 std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
@@ -231,9 +241,21 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
     states_.motion.ladder.registered(target_ns, frame.registered.moved_now);
 }
 
+/// The pose as the landmarks show that it is turned and bent, if the camera can see it so.
+ProjectedPose HandPipeline::posed(const HandFrame& frame) const {
+  if (frame.estimated) return *frame.estimated;
+  const Corrected& corrected = frame.corrected;
+  const bool is_bent = settings_.skin.bend && corrected.has_landmarks;
+  if (!settings_.skin.turn && !is_bent) return corrected.posed;
+  msg::HandPose pose = corrected.posed.pose;
+  if (settings_.skin.turn) pose = states_.reports.orientation_bias.turned(pose);
+  if (is_bent) pose = bent(pose, frame.registered.landmarks, calibration_);
+  return project(calibration_, pose).value_or(corrected.posed);
+}
+
 void HandPipeline::skin(HandFrame& frame, float shading) {
   auto& shape = states_.shape;
-  frame.drawn = frame.estimated.value_or(frame.corrected.posed);
+  frame.drawn = posed(frame);
   frame.from_px = to_projector(frame.drawn.landmarks, frame.drawn);
   frame.to_px = shape.fingers.moved(to_projector(frame.registered.landmarks, frame.drawn));
   frame.skinned =

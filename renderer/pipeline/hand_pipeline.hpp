@@ -14,6 +14,7 @@
 #include "renderer/correct/rung_mover.hpp"
 #include "renderer/draw/painter.hpp"
 #include "renderer/estimate/hand_estimate.hpp"
+#include "renderer/filter/landmark_offset.hpp"
 #include "renderer/filter/landmark_track.hpp"
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
@@ -23,6 +24,7 @@
 #include "renderer/predict/presence.hpp"
 #include "renderer/register/late_registration.hpp"
 #include "renderer/skin/hand_surface.hpp"
+#include "renderer/skin/orientation_bias.hpp"
 
 namespace handcast::renderer {
 
@@ -48,8 +50,10 @@ struct HandFrame {
 struct HandStates {
   /// How the reports of the sensors differ from the hand.
   struct Reports {
-    FingerSnaps snaps;        ///< of the tracker: fingers that it has lost
-    bool has_sigmas = false;  ///< the detector says how wrong its landmarks may be
+    FingerSnaps snaps;                 ///< of the tracker: fingers that it has lost
+    OrientationBias orientation_bias;  ///< of the tracker: how it turns the hand
+    LandmarkOffset landmark_offset;    ///< of the detector: where it sees the tracker's joints
+    bool has_sigmas = false;           ///< the detector says how wrong its landmarks may be
   } reports;
   /// Where the hand is: the states of predict, filter and ladder.
   struct Motion {
@@ -178,6 +182,7 @@ class HandPipeline {
                                          const Filtered& filtered) const;
   Corrected drawn_as(const ProjectedPose& hand, const Predicted& predicted,
                      const Filtered& filtered) const;
+  ProjectedPose posed(const HandFrame& frame) const;
   LandmarkPoints to_projector(const LandmarkPoints& camera_px, const ProjectedPose& depths) const;
   LateRegistration::Hand late_hand(const HandFrame& frame) const;
 
