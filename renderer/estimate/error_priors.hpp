@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "renderer/estimate/articulated_hand.hpp"
@@ -53,6 +54,8 @@ inline constexpr double kFoldedBend = 1.5;
 /// Across the camera's axis, and along it.
 inline constexpr double kDriftAcross_m = 1.7e-3, kDriftAlong_m = 0.7e-3;
 
+/// Landmarks of images that are closer than this say the same.
+inline constexpr std::int64_t kShortest_ns = 9'000'000;
 /// Of a detector's sigma, this share is noise of one image; the rest lasts kSeen_s. Never less than
 /// the least noise, which the pixels cause.
 inline constexpr double kWhiteShare = 0.35, kLeastNoise_px = 0.6;

@@ -6,14 +6,9 @@
 #include "ipc/base/clock.hpp"
 #include "renderer/estimate/articulated_hand.hpp"
 #include "renderer/estimate/error_filter.hpp"
+#include "renderer/estimate/error_priors.hpp"
 
 namespace handcast::renderer {
-namespace {
-
-/// Landmarks of images that are closer than this say the same.
-constexpr std::int64_t kShortest_ns = 9'000'000;
-
-}  // namespace
 
 HandEstimate::HandEstimate(const calib::Calibration& calibration)
     : calibration_(calibration), filter_(std::make_unique<ErrorFilter>()) {}
