@@ -61,6 +61,15 @@ class Rights : public testing::Test {
             .rig = control::address_of("desk").value().text};
   }
 
+  /// A process that was just forked says nothing of its rig until it runs its program.
+  static auto services_soon(const std::string& rig, std::size_t count) {
+    auto found = find_services(rig);
+    for (const auto limit = Deadline::in(std::chrono::seconds(20));
+         found.size() != count && !limit.passed(); found = find_services(rig))
+      usleep(10'000);
+    return found;
+  }
+
   ScopeScratch scratch_;
   std::filesystem::path program_;
 };
@@ -70,7 +79,7 @@ TEST_F(Rights, AServiceWithCapabilitiesIsFoundAndEnded) {
     auto child = Child::spawn(spec());
     ASSERT_TRUE(child) << child.error().what;
     EXPECT_EQ(proc_text("/proc/" + std::to_string(child->pid()) + "/environ"), "");
-    const auto found = find_services("desk");
+    const auto found = services_soon("desk", 1);
     ASSERT_THAT(found, SizeIs(1));
     EXPECT_EQ(found[0].service, "camera");
     EXPECT_EQ(found[0].epoch_ns, 42);
@@ -127,6 +136,7 @@ TEST_F(Rights, AServiceWithCapabilitiesThatNothingIsKeptOfIsEndedToBeStartedAnew
   as_nobody([this] {
     auto child = Child::spawn(spec());
     ASSERT_TRUE(child) << child.error().what;
+    ASSERT_THAT(services_soon("desk", 1), SizeIs(1));
     const auto adopted = adopt("desk");
     ASSERT_TRUE(adopted) << adopted.error().what;
     EXPECT_FALSE(*adopted);
@@ -143,7 +153,7 @@ TEST_F(Rights, AStoreIsOnlyMadeForServicesThatHideTheirDescriptors) {
     DescriptorStore store;
     plain.program = system_test::program_folder() / "handcast";
     store.keep(plain, {child->pid()});
-    EXPECT_THAT(find_services("desk"), SizeIs(1));
+    EXPECT_THAT(services_soon("desk", 1), SizeIs(1));
   });
 }
 
