@@ -75,6 +75,7 @@ inline Image<std::uint8_t> image_of(const calib::Calibration& calibration,
     std::vector<glm::vec3> skin_m(hand.vertex_count());
     skin(hand, frames_of(pose), skin_m);
     std::vector<glm::dvec2> px;
+    px.reserve(skin_m.size());
     for (const auto& point : skin_m)
       px.push_back(calibration.camera.distort(
           calibration.camera.project(in_camera(calibration, point)) + offset_px));

@@ -2,7 +2,9 @@
 // The contract of every detector, and the twin's.
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <algorithm>
+#include <cstddef>
+#include <span>
 
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
@@ -94,7 +96,8 @@ TEST_P(DetectorContract, LandmarksDependOnlyOnTheSettingsThatTheirRowNames) {
   const auto landmarks = first_landmarks(rig_);
   const auto other = first_landmarks(test::with_unread_settings_changed(rig_, "landmarks", *row));
   ASSERT_TRUE(landmarks && other);
-  EXPECT_EQ(std::memcmp(&*landmarks, &*other, sizeof *landmarks), 0)
+  const auto bytes = [](const msg::Landmarks& of) { return std::as_bytes(std::span(&of, 1)); };
+  EXPECT_TRUE(std::ranges::equal(bytes(*landmarks), bytes(*other)))
       << "a setting is missing in the row's `reads`";
 }
 

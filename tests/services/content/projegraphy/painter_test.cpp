@@ -48,10 +48,11 @@ renderer::Texture photo_of(const Animal& animal, ShadowPlayer& player) {
       glm::vec3 sum(0);
       constexpr int kTaps = 4;
       for (int k = 0; k < kTaps * kTaps; ++k) {
+        const int column = k % kTaps, row = k / kTaps;
         const int u = static_cast<int>(0.5 * (region.x0 + region.x1) +
-                                       (x + (k % kTaps + 0.5) / kTaps - 0.5 * kWidth) * by),
+                                       (x + (column + 0.5) / kTaps - 0.5 * kWidth) * by),
                   v = static_cast<int>(0.5 * (region.y0 + region.y1) +
-                                       (y + (k / kTaps + 0.5) / kTaps - 0.5 * kHeight) * by);
+                                       (y + (row + 0.5) / kTaps - 0.5 * kHeight) * by);
         const auto px =
             photo.at(std::clamp(u, 0, photo.width - 1), std::clamp(v, 0, photo.height - 1));
         sum += glm::vec3(px & 0xff, px >> 8 & 0xff, px >> 16 & 0xff);

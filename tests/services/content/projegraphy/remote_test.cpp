@@ -369,7 +369,7 @@ TEST_F(ComfyUiTest, WrongAndHugeAnswersAreErrorsAndNoPictures) {
   const auto with = [this](std::string& answer, const std::string& wrong) {
     const auto right = std::exchange(answer, wrong);
     asked_ = 0;
-    const auto found = error();
+    auto found = error();
     answer = right;
     return found;
   };

@@ -67,6 +67,7 @@ class ShaderTest : public testing::Test {
     moment_.hand = &hand_;
     moment_.other = &other_;
     std::vector<renderer::View<const std::uint32_t>> views;
+    views.reserve(inputs.size());
     for (const auto& input : inputs) views.push_back(input.view());
     if (picture_.width() == 0) picture_ = Texture(opening_.width, opening_.height);
     const auto drew = source.draw(moment_, views, picture_);
