@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <set>
@@ -20,7 +21,8 @@ namespace handcast::study {
 namespace {
 
 void hold(PoseGame& game, const HeldPose* held, double seconds) {
-  for (double s = 0; s < seconds; s += kStep_s) game.step(kStep_s, held);
+  const auto steps = static_cast<int>(std::ceil(seconds / kStep_s));
+  for (int step = 0; step < steps; ++step) game.step(kStep_s, held);
 }
 
 TEST(Poses, AreTheSameWhereverTheHandIsAndForBothHands) {
