@@ -10,9 +10,8 @@
 #include "renderer/estimate/hand_errors.hpp"
 
 /// @file
-/// How large errors are and how long they last: all constants of the estimate. They are those of a
-/// careful installation (docs/method.md#twin); a factor of 1.5 in any of them changes the error of
-/// the light by less than 5 %.
+/// How large errors are and how long they last: all constants of the estimate but those of joints
+/// (hand_errors.hpp). They are those of a careful installation (docs/method.md#twin).
 namespace handcast::renderer {
 
 inline constexpr double kDegree = std::numbers::pi / 180;

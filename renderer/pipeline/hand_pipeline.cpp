@@ -6,6 +6,7 @@
 
 #include "config/content_chain.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/statistics.hpp"
 #include "ipc/msg/projection.hpp"
 #include "renderer/content/textures.hpp"
 #include "renderer/correct/deform.hpp"
@@ -27,9 +28,7 @@ config::Filter filter_of(const config::Cascade& settings) {
 float median_distance(const LandmarkPoints& a, const LandmarkPoints& b) {
   std::array<float, kLandmarks> apart_px;
   for (int i = 0; i < kLandmarks; ++i) apart_px[i] = glm::distance(a[i], b[i]);
-  const auto middle = apart_px.begin() + kLandmarks / 2;
-  std::nth_element(apart_px.begin(), middle, apart_px.end());
-  return *middle;
+  return median(apart_px);
 }
 
 /// What is painted until the content service says more: the content itself if it is one picture, or

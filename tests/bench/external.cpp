@@ -145,7 +145,7 @@ int run(double seconds, const std::string& wait, const char* goals_file) {
     ::usleep(500'000);
     const auto ages = ages_us(seconds);
     print_ages("C", ages);
-    goals.push_back({"a sample from C to the projector's ring, p50", median(ages), 60, "us"});
+    goals.push_back({"a sample from C to the projector's ring, p50", median(ages), 5, "us"});
   }
   {
     const Program program([&] { track_in_python(seconds + 2); });
