@@ -13,11 +13,6 @@
 #include "services/pose/pose_source.hpp"
 #include "tests/fuzz/input.hpp"
 
-namespace handcast::pose {
-Result<std::unique_ptr<PoseSource>> open_replay(const config::Rig& rig, const calib::Calibration&,
-                                                const std::int64_t& epoch_ns);
-}
-
 namespace {
 
 using namespace handcast;
@@ -72,14 +67,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto calibration = calib::reference_rig();
   calibration.camera.width_px = calibration.camera.height_px = 16;
   config::Rig rig;
-  rig.camera.backend = rig.landmarks.backend = "replay";
+  rig.camera.backend = rig.pose.backend = rig.landmarks.backend = "replay";
   rig.camera.replay.directory = rig.pose.replay.directory = rig.landmarks.replay.directory =
       folder.path();
   const auto past = Deadline::in(std::chrono::seconds(0));
   const std::int64_t epoch_ns = now_ns();
 
   msg::HandPoses poses;
-  if (const auto source = pose::open_replay(rig, calibration, epoch_ns))
+  if (const auto source = pose::open_pose_source(rig, calibration, epoch_ns))
     (void)(*source)->sample(poses, past);
   msg::CameraFrame frame;
   frame.header.origin_ns = epoch_ns;

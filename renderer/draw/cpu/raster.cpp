@@ -181,7 +181,7 @@ template <bool kDelicate, bool kLit>
       light = bounded(light, setup.least.light, setup.most.light);
     }
     const auto tag = static_cast<std::uint32_t>(static_cast<std::int32_t>(light)) << 8 | setup.tag;
-    const std::uint32_t hit = (outside >= 0) & (depth <= old_depth) ? ~0u : 0;
+    const std::uint32_t hit = ((outside >= 0) & (depth <= old_depth)) ? ~0u : 0;
     block.depth[i] = chosen(hit, depth, old_depth);
     block.s[i] = chosen(hit, s, old_s);
     block.t[i] = chosen(hit, t, old_t);
