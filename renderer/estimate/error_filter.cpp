@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/statistics.hpp"
+
 namespace handcast::renderer {
 namespace {
 
@@ -16,19 +18,6 @@ constexpr Eigen::Index index(std::size_t error) { return static_cast<Eigen::Inde
 
 /// Errors as a vector of Eigen.
 auto as_vector(HandErrors& errors) { return Eigen::Map<Eigen::VectorXd>(errors.data(), kErrors); }
-
-/// The share of each error that is left after a time.
-HandErrors kept_after(double seconds) {
-  HandErrors kept;
-  kept.fill(1);
-  const auto fade = [&](std::size_t first, int count, double share) {
-    std::fill_n(kept.begin() + index(first), count, share);
-  };
-  for_priors([&](const ErrorPrior& prior) { fade(prior.first, prior.count, prior.kept(seconds)); });
-  fade(error::kBend, kFingers * kBendsOfFinger, std::exp(-seconds / kPosture_s));
-  fade(error::kSeen, 2 * kLandmarks, std::exp(-seconds / kSeen_s));
-  return kept;
-}
 
 }  // namespace
 
@@ -52,6 +41,23 @@ void ErrorFilter::begin() {
   for (int finger = 0; finger < kFingers; ++finger) add_bends(finger, 1);
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
     set_variance(seen_prior(landmark, sigma_px_[landmark]));
+}
+
+HandErrors ErrorFilter::kept_after(double seconds) const {
+  HandErrors kept;
+  kept.fill(1);
+  const auto fade = [&](const ErrorPrior& prior, double gross_s = kGross_s) {
+    const double usual = prior.kept(seconds),
+                 gross = std::exp(-seconds / std::max(prior.lasts_s, gross_s));
+    for (std::size_t i = prior.first; i < prior.first + static_cast<std::size_t>(prior.count); ++i)
+      kept[i] = std::abs(errors_[i]) > kHuber * prior.sd ? gross : usual;
+  };
+  for_priors([&](const ErrorPrior& prior) { fade(prior); });
+  fade({error::kBend, kFingers * kBendsOfFinger, std::hypot(kSharedBend_rad, kOwnBend_rad),
+        kPosture_s});
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    fade(seen_prior(landmark, sigma_px_[landmark]), kLasting_s);
+  return kept;
 }
 
 void ErrorFilter::set_variance(const ErrorPrior& prior) {
@@ -148,33 +154,103 @@ void ErrorFilter::add_slopes(int landmark, const glm::dmat3x2& px_per_m,
   add(error::seen_of(landmark) + 1, {0, 1});
 }
 
-/// Landmarks that are further off than is likely get more noise.
-void ErrorFilter::weaken_outliers() {
-  const double mean_variance = expected_.trace() / kNumbers;
-  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
-    const int at = 2 * landmark;
-    const double likely = expected_(at, at) + expected_(at + 1, at + 1);
-    const double off = std::sqrt(2 * residual_.segment<2>(at).squaredNorm() / likely);
-    if (!(off > kHuber)) continue;
-    const double more = mean_variance * (square(off / kHuber) - 1);
-    noise_.segment<2>(at).array() += more;
-    expected_.diagonal().segment<2>(at).array() += more;
-  }
-}
-
-void ErrorFilter::update(const calib::CameraModel& camera, const HandJoints& reported,
+void ErrorFilter::expect(const calib::CameraModel& camera, const HandJoints& reported,
                          const msg::HandLandmarks& seen) {
-  set_noise(seen);
   linearise(camera, reported, seen);
   expected_.noalias() = slopes_.transpose() * spread_;
   expected_.diagonal() += noise_;
-  weaken_outliers();
+}
+
+/// How far off a landmark is, in standard deviations.
+double ErrorFilter::deviation(int landmark) const {
+  const int at = 2 * landmark;
+  const double likely = expected_(at, at) + expected_(at + 1, at + 1);
+  return std::sqrt(2 * residual_.segment<2>(at).squaredNorm() / likely);
+}
+
+bool ErrorFilter::is_contradicted() const {
+  std::array<double, kLandmarks> off;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) off[landmark] = deviation(landmark);
+  return median(off) > kContradicted;
+}
+
+/// A finger that the tracker has moved abruptly, and that is far from the landmarks, may be
+/// anywhere now. Returns whether there is one.
+bool ErrorFilter::free_fingers(const AbruptLandmarks& abrupt) {
+  std::array<int, kFingers> far{};
+  for (int landmark = first_landmark(0); landmark < kLandmarks; ++landmark)
+    if (abrupt[landmark] == Abrupt::tracker && deviation(landmark) > kHuber)
+      ++far[finger_of_landmark(landmark)];
+  bool any = false;
+  for (int finger = 0; finger < kFingers; ++finger) {
+    if (far[finger] < 2) continue;
+    any = true;
+    add_bends(finger, square(kFreedBend_rad / kSharedBend_rad));
+    covariance_.diagonal()[index(error::spread_of(finger))] += square(kFreedSpread_rad);
+    covariance_.diagonal().segment<3>(index(error::drift_of(finger))).array() += square(kFreed_m);
+  }
+  return any;
+}
+
+/// A landmark whose error was gross, and that the detector has moved abruptly, is right again:
+/// forgets its error, and that it was moved. Returns whether there is one.
+bool ErrorFilter::end_errors(AbruptLandmarks& abrupt) {
+  bool any = false;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const auto seen = index(error::seen_of(landmark));
+    auto errors_px = as_vector(errors_).segment<2>(seen);
+    if (abrupt[landmark] != Abrupt::detector || deviation(landmark) < kHuber ||
+        errors_px.norm() < kHuber * sigma_px_[landmark])
+      continue;
+    any = true;
+    errors_px.setZero();
+    covariance_.middleRows<2>(seen).setZero();
+    covariance_.middleCols<2>(seen).setZero();
+    set_variance(seen_prior(landmark, sigma_px_[landmark]));
+    abrupt[landmark] = Abrupt::neither;
+  }
+  return any;
+}
+
+/// Landmarks that are further off than is likely count less: those that the detector has moved
+/// abruptly may have a new error that lasts, the others that of one image.
+void ErrorFilter::doubt_landmarks(const AbruptLandmarks& abrupt) {
+  const double mean_variance = expected_.trace() / kNumbers;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const double off = deviation(landmark);
+    if (!(off > kHuber)) continue;
+    const int at = 2 * landmark;
+    if (abrupt[landmark] != Abrupt::tracker) {
+      const auto seen = index(error::seen_of(landmark));
+      const double more = residual_.segment<2>(at).squaredNorm();
+      for (int axis = 0; axis < 2; ++axis) {
+        covariance_(seen + axis, seen + axis) += more;
+        spread_(seen + axis, at + axis) += more;
+        expected_(at + axis, at + axis) += more;
+      }
+    } else {
+      const double more = mean_variance * (square(off / kHuber) - 1);
+      noise_.segment<2>(at).array() += more;
+      expected_.diagonal().segment<2>(at).array() += more;
+    }
+  }
+}
+
+bool ErrorFilter::update(const calib::CameraModel& camera, const HandJoints& reported,
+                         const msg::HandLandmarks& seen, AbruptLandmarks abrupt) {
+  set_noise(seen);
+  expect(camera, reported, seen);
+  if (is_contradicted()) return false;
+  const bool is_freed = free_fingers(abrupt), is_ended = end_errors(abrupt);
+  if (is_freed || is_ended) expect(camera, reported, seen);
+  doubt_landmarks(abrupt);
   root_.compute(expected_);
   root_.solveInPlace(residual_);
   auto state = as_vector(errors_);
   state.noalias() += spread_ * residual_;
   reduce_covariance();
   if (!state.allFinite() || !covariance_.diagonal().allFinite()) begin();
+  return true;
 }
 
 /// By what the landmarks have told.

@@ -5,6 +5,7 @@
 
 #include "calib/calibration.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "renderer/estimate/abruptness.hpp"
 #include "renderer/estimate/articulated_hand.hpp"
 #include "renderer/estimate/error_priors.hpp"
 #include "renderer/estimate/hand_errors.hpp"
@@ -25,8 +26,9 @@ class ErrorFilter {
   /// Forgets where the tracker puts the hand and how it bends the fingers, not the person's joints.
   void forget_place();
   /// Adds the landmarks of an image (undistorted px) and the tracker's hand at the same time.
-  void update(const calib::CameraModel& camera, const HandJoints& reported,
-              const msg::HandLandmarks& seen);
+  /// Returns false, and learns nothing, if most landmarks are where that hand cannot be.
+  bool update(const calib::CameraModel& camera, const HandJoints& reported,
+              const msg::HandLandmarks& seen, AbruptLandmarks abrupt);
 
   /// The errors that are expected after a time in which nothing is seen.
   HandErrors errors_after(double seconds) const;
@@ -36,13 +38,21 @@ class ErrorFilter {
   using Matrix = Eigen::MatrixXd;
 
   void begin();
+  /// The share of each error that is left after a time.
+  HandErrors kept_after(double seconds) const;
   void set_variance(const ErrorPrior& prior);
   void add_bends(int finger, double share);
   void set_noise(const msg::HandLandmarks& seen);
   void linearise(const calib::CameraModel& camera, const HandJoints& reported,
                  const msg::HandLandmarks& seen);
   void add_slopes(int landmark, const glm::dmat3x2& px_per_m, const ArticulatedHand& hand);
-  void weaken_outliers();
+  void expect(const calib::CameraModel& camera, const HandJoints& reported,
+              const msg::HandLandmarks& seen);
+  double deviation(int landmark) const;
+  bool is_contradicted() const;
+  bool free_fingers(const AbruptLandmarks& abrupt);
+  bool end_errors(AbruptLandmarks& abrupt);
+  void doubt_landmarks(const AbruptLandmarks& abrupt);
   void reduce_covariance();
 
   HandErrors errors_{};

@@ -32,8 +32,11 @@ struct ErrorPrior {
   }
 };
 
-/// How long errors of an installation or a person, of a posture, and of a moment last.
-inline constexpr double kLasting_s = 60, kPosture_s = 0.7, kDrift_s = 0.3, kSeen_s = 0.35;
+/// How long errors of an installation or a person, of a posture, and of a moment last, and at least
+/// those of the tracker of more than three standard deviations: a finger that is taken for another
+/// stays so until it jumps back. Such errors of the detector last.
+inline constexpr double kLasting_s = 60, kPosture_s = 0.7, kDrift_s = 0.3, kSeen_s = 0.35,
+                        kGross_s = 2;
 
 /// Where the tracker's calibration and its idea of the hand's size put the hand, and the fingers.
 inline constexpr std::array kErrorPriors{
@@ -60,8 +63,14 @@ inline constexpr std::int64_t kShortest_ns = 9'000'000;
 inline constexpr double kWhiteShare = 0.35, kLeastNoise_px = 0.6;
 /// Of a detector that reports no sigma.
 inline constexpr double kUnknownSigma_px = 5;
-/// A landmark that is further off than so many standard deviations counts less.
-inline constexpr double kHuber = 3;
+/// A landmark that is further off than so many standard deviations counts less. If half of them are
+/// this far off, they are not of the tracker's hand.
+inline constexpr double kHuber = 3, kContradicted = 6;
+/// A tracker that landmarks contradict for so long has been moved.
+inline constexpr std::int64_t kMoved_ns = 1'000'000'000;
+/// Where a finger may be that the tracker has moved abruptly: bent, spread, displaced.
+inline constexpr double kFreedBend_rad = 40 * kDegree, kFreedSpread_rad = 20 * kDegree,
+                        kFreed_m = 0.02;
 
 /// Calls `visit` with the priors of all errors but bends and those of the detector.
 template <class Visit>

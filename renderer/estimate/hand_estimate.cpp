@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/estimate/hand_estimate.hpp"
 
-#include <algorithm>
-
 #include "ipc/base/clock.hpp"
 #include "renderer/estimate/articulated_hand.hpp"
-#include "renderer/estimate/error_filter.hpp"
 #include "renderer/estimate/error_priors.hpp"
+#include "renderer/estimate/known_errors.hpp"
 
 namespace handcast::renderer {
+namespace {
+
+LandmarkPoints points_px(const msg::HandLandmarks& seen) {
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i) points[i] = position_px(seen.points[i]);
+  return points;
+}
+
+}  // namespace
 
 HandEstimate::HandEstimate(const calib::Calibration& calibration)
-    : calibration_(calibration), filter_(std::make_unique<ErrorFilter>()) {}
+    : calibration_(calibration), known_(std::make_unique<KnownErrors>()) {}
 HandEstimate::~HandEstimate() = default;
 HandEstimate::HandEstimate(HandEstimate&&) noexcept = default;
 HandEstimate& HandEstimate::operator=(HandEstimate&&) noexcept = default;
@@ -27,18 +34,30 @@ void HandEstimate::look_back(const HandTrack& track) {
   const auto pose = track.recent_pose(origin_ns);
   if (!pose || origin_ns < track.begins_ns()) return;
   const auto reported = in_camera(calibration_, *pose);
-  if (knows()) filter_->pass(ns_to_seconds(origin_ns - last_ns_), flexions_of(reported));
-  filter_->update(calibration_.camera, reported, seen);
+  const auto abrupt = abruptness_.add(origin_ns, landmarks_px(reported), points_px(seen));
   last_ns_ = origin_ns;
+  if (known_->add(calibration_.camera, {origin_ns, reported, seen, abrupt}))
+    explained_ns_ = origin_ns;
+  else if (origin_ns - explained_ns_ > kMoved_ns)
+    known_->doubt_place();
+}
+
+/// Where the tracker has the landmarks.
+LandmarkPoints HandEstimate::landmarks_px(const HandJoints& reported) const {
+  LandmarkPoints points;
+  for (int i = 0; i < kLandmarks; ++i)
+    points[i] = calibration_.camera.project(reported.at_m[joint_of_landmark(i)]);
+  return points;
 }
 
 void HandEstimate::tracker_jumped() {
-  filter_->forget_place();
+  known_->doubt_place();
+  abruptness_.forget();
   waiting_.reset();
-  last_ns_ = 0;
+  explained_ns_ = 0;
 }
 
-bool HandEstimate::knows() const { return last_ns_ != 0; }
+bool HandEstimate::knows() const { return explained_ns_ != 0 && explained_ns_ == last_ns_; }
 
 msg::HandPose HandEstimate::corrected(std::int64_t time_ns, const msg::HandPose& reported) const {
   const ArticulatedHand hand(in_camera(calibration_, reported), errors_at(time_ns));
@@ -46,7 +65,7 @@ msg::HandPose HandEstimate::corrected(std::int64_t time_ns, const msg::HandPose&
 }
 
 HandErrors HandEstimate::errors_at(std::int64_t time_ns) const {
-  return filter_->errors_after(std::max(0.0, ns_to_seconds(time_ns - last_ns_)));
+  return known_->errors_at(time_ns);
 }
 
 }  // namespace handcast::renderer

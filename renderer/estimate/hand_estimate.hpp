@@ -7,12 +7,14 @@
 #include "calib/calibration.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
+#include "renderer/estimate/abruptness.hpp"
 #include "renderer/estimate/hand_errors.hpp"
 #include "renderer/predict/hand_track.hpp"
 
 namespace handcast::renderer {
 
-class ErrorFilter;
+class KnownErrors;
+struct HandJoints;
 
 /// Step "estimate" and its state: the most likely hand, given the samples of the tracker and the
 /// landmarks of the images. What is wrong with the tracker's hand is estimated, because it changes
@@ -34,10 +36,10 @@ class HandEstimate {
   void look_back(const HandTrack& track);
 
   /// The tracker has jumped: where it puts the hand from now on is not known until landmarks show
-  /// it. What is known of the person stays.
+  /// it.
   void tracker_jumped();
 
-  /// True once landmarks were used.
+  /// True once landmarks were used, unless the newest ones contradict the tracker.
   bool knows() const;
   /// The tracker's hand at a time without its errors. What is known only for a moment fades after
   /// the newest landmarks.
@@ -51,9 +53,16 @@ class HandEstimate {
     msg::HandLandmarks seen;
   };
 
+  LandmarkPoints landmarks_px(const HandJoints& reported) const;
+
   calib::Calibration calibration_;
-  std::unique_ptr<ErrorFilter> filter_;
-  std::int64_t last_ns_ = 0;  ///< exposure of the newest landmarks that were used; 0: none
+  std::unique_ptr<KnownErrors> known_;
+  /// Exposure of the newest landmarks, and of the newest that do not contradict the tracker; 0:
+  /// none, since it jumped.
+  /// @{
+  std::int64_t last_ns_ = 0, explained_ns_ = 0;
+  /// @}
+  Abruptness abruptness_;
   std::optional<Waiting> waiting_;
 };
 

@@ -20,7 +20,7 @@ namespace handcast::renderer {
 namespace {
 
 constexpr std::int64_t kStep_ns = 10'000'000;
-constexpr float kSigma_px = 2, kLasting_s = 0.35f;  ///< of a landmark; how long its error lasts
+constexpr float kSigma_px = 2, kLasts_s = 0.35f;  ///< of a landmark; how long its error lasts
 
 glm::vec3 at(const msg::HandPose& pose, int landmark) {
   return position(pose.joints[static_cast<std::size_t>(msg::kJointOfLandmark[landmark])]);
@@ -32,6 +32,18 @@ float apart_mm(const msg::HandPose& a, const msg::HandPose& b) {
   for (int i = 0; i < kLandmarks; ++i) sum += glm::distance(at(a, i), at(b, i));
   return 1e3f * sum / kLandmarks;
 }
+
+/// A tracker or a detector that takes the index finger for the middle finger, and the reverse.
+/// @{
+msg::HandPose swapped(msg::HandPose pose) {
+  std::swap_ranges(&pose.joints[6], &pose.joints[11], &pose.joints[11]);
+  return pose;
+}
+msg::HandLandmarks swapped(msg::HandLandmarks seen) {
+  std::swap_ranges(&seen.points[5], &seen.points[9], &seen.points[9]);
+  return seen;
+}
+/// @}
 
 class Estimate : public ::testing::Test {
  protected:
@@ -48,7 +60,7 @@ class Estimate : public ::testing::Test {
   msg::HandLandmarks seen(const msg::HandPose& pose, float noise_px = 0) {
     const auto px = project_landmarks(calibration_, pose).value();
     std::normal_distribution<float> normal;
-    const float kept = std::exp(-1e-9f * float(kStep_ns) / kLasting_s),
+    const float kept = std::exp(-1e-9f * float(kStep_ns) / kLasts_s),
                 renewed = std::sqrt(1 - kept * kept);
     msg::HandLandmarks seen;
     for (int i = 0; i < kLandmarks; ++i) {
@@ -68,6 +80,25 @@ class Estimate : public ::testing::Test {
       estimate_.look_back(track_);
     }
     time_ns_ -= kStep_ns;
+  }
+  /// Seconds in which the tracker or the detector takes two fingers for each other.
+  void follow_wrong(double seconds, bool is_tracker, bool is_detector) {
+    for (const auto end_ns = time_ns_ + std::int64_t(1e9 * seconds); time_ns_ < end_ns;
+         time_ns_ += kStep_ns) {
+      const auto pose = truth(time_ns_);
+      report(is_tracker ? swapped(pose) : pose);
+      estimate_.detection(time_ns_, is_detector ? swapped(seen(pose)) : seen(pose));
+      estimate_.look_back(track_);
+    }
+    time_ns_ -= kStep_ns;
+  }
+  /// Mean distance of the landmarks in the image, px.
+  float apart_px(const msg::HandPose& a, const msg::HandPose& b) const {
+    const auto one = project_landmarks(calibration_, a).value(),
+               other = project_landmarks(calibration_, b).value();
+    float sum = 0;
+    for (int i = 0; i < kLandmarks; ++i) sum += glm::distance(one[i], other[i]);
+    return sum / kLandmarks;
   }
   msg::HandPose corrected(const msg::HandPose& pose) const {
     return estimate_.corrected(time_ns_, pose);
@@ -139,6 +170,45 @@ TEST_F(Estimate, AWrongLandmarkMovesTheHandLittle) {
   for (const int landmark : {0, 5, 9, 12, 16, 20})
     EXPECT_LT(1e3f * glm::distance(at(hand, landmark), at(right, landmark)), 3) << landmark;
   EXPECT_LT(1e3f * glm::distance(at(hand, 8), at(right, 8)), 12);  // 80 px are 41 mm
+}
+
+TEST_F(Estimate, AFingerThatTheTrackerTakesForAnotherIsWhereTheLandmarksAre) {
+  follow(1, glm::mat4(1));
+  follow_wrong(0.6, true, false);
+  EXPECT_LT(apart_px(corrected(swapped(truth(time_ns_))), truth(time_ns_)), 3);
+  follow(0.04, glm::mat4(1));
+  EXPECT_LT(apart_px(corrected(truth(time_ns_)), truth(time_ns_)), 2);
+}
+
+TEST_F(Estimate, AFingerThatTheDetectorTakesForAnotherStaysWhereTheTrackerIs) {
+  follow(1, glm::mat4(1));
+  follow_wrong(0.3, false, true);
+  EXPECT_LT(apart_px(corrected(truth(time_ns_)), truth(time_ns_)), 4);
+  follow(0.04, glm::mat4(1));
+  EXPECT_LT(apart_px(corrected(truth(time_ns_)), truth(time_ns_)), 2);
+}
+
+TEST_F(Estimate, ATrackerThatLosesTheHandLittleByLittleIsTrustedAgainWhenItHasIt) {
+  const auto away = [](double share) {
+    return glm::translate(glm::mat4(1), {0.15f * static_cast<float>(share), 0, 0});
+  };
+  follow(1, glm::mat4(1));
+  for (int i = 0; i < 60; ++i) {
+    time_ns_ += kStep_ns;
+    follow(0.01, away(i / 60.0));
+  }
+  time_ns_ += kStep_ns;
+  follow(0.04, glm::mat4(1));
+  EXPECT_TRUE(estimate_.knows());
+  EXPECT_LT(apart_mm(corrected(truth(time_ns_)), truth(time_ns_)), 2);
+}
+
+TEST_F(Estimate, ATrackerThatWasMovedIsLearnedAnew) {
+  const auto moved = glm::translate(glm::mat4(1), {0.08f, 0, 0});
+  follow(1, glm::mat4(1));
+  follow(2, moved);
+  EXPECT_TRUE(estimate_.knows());
+  EXPECT_LT(apart_mm(corrected(truth(time_ns_, moved)), truth(time_ns_)), 4);
 }
 
 TEST_F(Estimate, LandmarksThatWereNotSeenDoNotCount) {
