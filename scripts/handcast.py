@@ -34,7 +34,7 @@ try:
 except ImportError:  # pictures are flat bytes, hands are structures
     numpy = None
 
-ABI = 0
+ABI = 1
 TIMEOUT = 1
 HANDS = ("left", "right")
 JOINTS = 26
@@ -73,12 +73,12 @@ class BothHands(ctypes.Structure):
 
 class _Image(ctypes.Structure):
     _fields_ = [("pixels", ctypes.c_void_p), ("width", ctypes.c_int32), ("height", ctypes.c_int32),
-                ("number", ctypes.c_uint64), ("time_ns", ctypes.c_int64)]
+                ("number", ctypes.c_uint64), ("time_ns", ctypes.c_int64), ("camera", ctypes.c_int32)]
 
 
 class _Landmarks(ctypes.Structure):
     _fields_ = [("image", ctypes.c_uint64), ("time_ns", ctypes.c_int64), ("presence", ctypes.c_float * 2),
-                ("points", ctypes.c_float * 4 * LANDMARKS * 2)]
+                ("points", ctypes.c_float * 4 * LANDMARKS * 2), ("camera", ctypes.c_int32)]
 
 
 class Frame(NamedTuple):
@@ -156,8 +156,8 @@ def now_ns() -> int:
 class Camera:
     """The images of the rig's camera; and the camera of a rig with camera.backend = "external"."""
 
-    def __init__(self, rig: "Rig"):
-        self._rig = rig
+    def __init__(self, rig: "Rig", number: int = 0):
+        self._rig, self._number = rig, number
         self._image = _Image()
 
     def wait(self, seconds: float = 1) -> Optional[Frame]:
@@ -175,7 +175,7 @@ class Camera:
         exposure."""
         pixels = numpy.ascontiguousarray(pixels, numpy.uint8)
         height, width = pixels.shape
-        rig, image = self._rig, _Image(pixels.ctypes.data, width, height, 0, origin_ns)
+        rig, image = self._rig, _Image(pixels.ctypes.data, width, height, 0, origin_ns, self._number)
         rig._check(rig._library.handcast_send_image(rig._handle, image))
 
     def __iter__(self) -> Iterator[Frame]:
@@ -226,9 +226,9 @@ class Pose:
 class Landmarks:
     """The detector of a rig with landmarks.backend = "external"."""
 
-    def __init__(self, rig: "Rig"):
+    def __init__(self, rig: "Rig", camera: int = 0):
         self._rig = rig
-        self._found = _Landmarks()
+        self._found = _Landmarks(camera=camera)
         self._points = [numpy.frombuffer(self._found.points[side], numpy.float32).reshape(LANDMARKS, 4) for side in (0, 1)]
 
     def publish(self, hands: Mapping[str, Sequence], origin_ns: int, image: int = 0) -> None:
@@ -247,13 +247,14 @@ class Landmarks:
 
 
 class Rig(_Handle):
-    """A rig that is up: `name`, or "" for the only one. `camera` and `hands` are read; `pose`, `landmarks` and
-    `camera` can be sent."""
+    """A rig that is up: `name`, or "" for the one that has started this program, or the only one. `camera` and `hands`
+    are read; `pose`, `landmarks` and `camera`, and those of a second camera, `landmarks2` and `camera2`, can be sent."""
 
     def __init__(self, name: str = ""):
         super().__init__()
         self._check(self._library.handcast_rig_open(name.encode(), ctypes.byref(self._handle)))
         self.camera, self.hands, self.pose, self.landmarks = Camera(self), Hands(self), Pose(self), Landmarks(self)
+        self.camera2, self.landmarks2 = Camera(self, 1), Landmarks(self, 1)
 
     def close(self) -> None:
         """Leaves the rig."""

@@ -52,7 +52,7 @@ extern "C" {
 #endif
 
 /** Raised when a program that was compiled with an older header would no longer work. */
-#define HANDCAST_ABI 0
+#define HANDCAST_ABI 1
 
 /** A writer of pictures for one hand. */
 typedef struct handcast_content handcast_content;
@@ -101,6 +101,7 @@ typedef struct handcast_image {
   int32_t width, height;
   uint64_t number; /**< counted by the camera */
   int64_t time_ns; /**< the middle of its exposure */
+  int32_t camera;  /**< of an image to be sent: 0 the first camera, 1 the second one (camera2) */
 } handcast_image;
 
 /** One landmark, px of the image as the lens forms it: x from the centre of the leftmost pixel to
@@ -118,6 +119,7 @@ typedef struct handcast_landmarks {
   float presence[2]; /**< 0 to 1: how likely the hand is there; 0: it is not. Left, right. */
   /** In the order of MediaPipe: wrist, then thumb to little finger, each from palm to tip. */
   handcast_point points[2][HANDCAST_LANDMARKS];
+  int32_t camera; /**< whose image it is: 0 the first camera, 1 the second one (landmarks2) */
 } handcast_landmarks;
 
 /** The version of the library: "0.1.0". */
@@ -133,7 +135,8 @@ int64_t handcast_now(void);
  *  on it. */
 const char* handcast_error(void);
 
-/** Opens a rig that is up. `name`: its name; "" or NULL: the only one. On an error `*rig` is NULL. */
+/** Opens a rig that is up. `name`: its name; "" or NULL: the one that has started this program, or
+ *  the only one. On an error `*rig` is NULL. */
 handcast_result handcast_rig_open(const char* name, handcast_rig** rig);
 
 /** Waits for an image of the camera, or a sample of the tracker, that is newer than the last one
@@ -144,7 +147,7 @@ handcast_result handcast_wait_hands(handcast_rig* rig, handcast_both_hands* hand
 
 /** Sends a sample of a tracker, the landmarks of an image, or an image, which must have the size of
  *  the camera in the calibration; does not wait. The rig uses them if pose.backend,
- *  landmarks.backend or camera.backend is "external". Times must increase, be at most 1 s old and
+ *  landmarks.backend, camera.backend or camera2.backend is "external". Times must increase, be at most 1 s old and
  *  at most 50 ms of the future. HANDCAST_BAD_DATA: it was not sent; the sentence says why.
  *  HANDCAST_UNAVAILABLE: another program sends. */
 handcast_result handcast_send_hands(handcast_rig* rig, const handcast_both_hands* hands);

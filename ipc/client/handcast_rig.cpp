@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -33,12 +35,12 @@ constexpr std::int64_t kAskEvery_ns = 3'000'000'000;
 /// The way of messages of one type to the rig. Opened with the first one.
 template <class T>
 struct Outbox {
+  std::string_view stream;
   std::optional<handcast::ipc::Writer<T>> writer{};
   std::optional<handcast::client::RigPresence> presence{};
   std::int64_t last_ns = 0;
-  std::uint64_t number = 0;
 
-  Result<void> open(const std::string& rig, std::string_view stream) {
+  Result<void> open(const std::string& rig) {
     auto ring = handcast::client::rig_ring(rig, stream);
     if (!ring) return tl::make_unexpected(ring.error());
     presence.emplace(ring->rig, std::string(stream), ring->segment.created_ns(),
@@ -50,12 +52,12 @@ struct Outbox {
   }
 
   /// Checks a message, and opens the way if it is not open.
-  Result<void> prepare(const std::string& rig, std::string_view stream, const T& message) {
+  Result<void> prepare(const std::string& rig, const T& message) {
     const auto time_ns = handcast::now_ns();
     if (auto time = check_guest_time(message.header.origin_ns, last_ns, time_ns); !time)
       return time;
     if (auto fits = check_guest(message); !fits) return fits;
-    return writer ? Result<void>() : open(rig, stream);
+    return writer ? Result<void>() : open(rig);
   }
   /// What to send is a message, or a loan of a prepared one.
   template <class Sent>
@@ -69,10 +71,11 @@ struct Outbox {
 /// A stream that is read. Opened with the first read.
 template <class T>
 struct Inbox {
+  std::string_view name;
   std::optional<handcast::client::Stream<T>> stream{};
   std::optional<handcast::ipc::Sample<T>> newest{};
 
-  Result<void> wait(const std::string& rig, std::string_view name, Deadline deadline) {
+  Result<void> wait(const std::string& rig, Deadline deadline) {
     if (!stream) {
       auto opened = handcast::client::open_stream<T>(rig, name);
       if (!opened) return tl::make_unexpected(opened.error());
@@ -90,11 +93,12 @@ struct Inbox {
 /// What a handle stands for.
 struct handcast_rig {
   std::string name;
-  Inbox<CameraFrame> images{};
-  Inbox<HandPoses> hands{};
-  Outbox<CameraFrame> pictures{};
-  Outbox<HandPoses> poses{};
-  Outbox<Landmarks> landmarks{};
+  Inbox<CameraFrame> images{"camera.frames"};
+  Inbox<HandPoses> hands{"pose.hands"};
+  std::array<Outbox<CameraFrame>, 2> pictures{{{kGuestImages}, {kSecondGuestImages}}};
+  std::array<Outbox<HandPoses>, 1> poses{{{kGuestPoses}}};
+  std::array<Outbox<Landmarks>, 2> landmarks{{{kGuestLandmarks}, {kSecondGuestLandmarks}}};
+  std::uint64_t samples = 0;  ///< of hands that were sent
 };
 
 namespace {
@@ -154,6 +158,58 @@ Landmarks message_of(const handcast_landmarks& found) {
   return landmarks;
 }
 
+handcast_image image_of(const CameraFrame& frame) {
+  return {frame.pixels(),
+          static_cast<int32_t>(frame.width_px),
+          static_cast<int32_t>(frame.height_px),
+          frame.header.frame_id,
+          frame.header.origin_ns,
+          0};
+}
+
+/// handcast_wait_image() and handcast_wait_hands(), whose `result` has the name `argument`.
+template <class T, class Read, class ResultOf>
+handcast_result wait_for(handcast_rig* rig, Inbox<T> handcast_rig::*box, const char* function,
+                         const char* argument, Read* result, int timeout_ms,
+                         const ResultOf& result_of) {
+  if (result) *result = {};
+  return with(rig, function, [&]() -> Result<void> {
+    if (!result) return missing(function, argument);
+    const auto deadline = deadline_in(function, timeout_ms);
+    if (!deadline) return tl::make_unexpected(deadline.error());
+    Inbox<T>& inbox = rig->*box;
+    if (auto come = inbox.wait(rig->name, *deadline); !come) return come;
+    *result = result_of(**inbox.newest);
+    return {};
+  });
+}
+
+std::size_t camera_of(const handcast_both_hands&) { return 0; }
+std::size_t camera_of(const auto& sent) { return static_cast<std::size_t>(sent.camera); }
+
+/// The way of what is of a camera: 0 the first one, 1 the second.
+template <class Boxes>
+Result<typename Boxes::value_type*> outbox(Boxes& boxes, const char* function, std::size_t camera) {
+  if (camera < boxes.size()) return &boxes[camera];
+  return fail(Errc::bad_config, fmt::format("{}: `camera` is neither 0 nor 1", function));
+}
+
+/// handcast_send_hands() and handcast_send_landmarks(), whose `sent` has the name `argument`.
+template <class Boxes, class Sent>
+handcast_result send(handcast_rig* rig, Boxes handcast_rig::*boxes, const char* function,
+                     const char* argument, const Sent* sent) {
+  return with(rig, function, [&]() -> Result<void> {
+    if (!sent) return missing(function, argument);
+    const auto box = outbox(rig->*boxes, function, camera_of(*sent));
+    if (!box) return tl::make_unexpected(box.error());
+    auto message = message_of(*sent);
+    if constexpr (std::is_same_v<Sent, handcast_both_hands>)
+      message.header.frame_id = ++rig->samples;
+    if (auto ready = (*box)->prepare(rig->name, message); !ready) return ready;
+    return (*box)->send(message.header.origin_ns, message);
+  });
+}
+
 }  // namespace
 
 int handcast_abi() { return HANDCAST_ABI; }
@@ -166,65 +222,39 @@ handcast_result handcast_rig_open(const char* name, handcast_rig** rig) {
     *rig = nullptr;
     const auto chosen = handcast::control::choose_rig(name ? name : "");
     if (!chosen) return tl::make_unexpected(chosen.error());
-    *rig = handcast::client::Handles<handcast_rig>::add(
-        std::unique_ptr<handcast_rig>(new handcast_rig{*chosen}));
+    auto opened = std::make_unique<handcast_rig>();
+    opened->name = *chosen;
+    *rig = handcast::client::Handles<handcast_rig>::add(std::move(opened));
     return {};
   });
 }
 
 handcast_result handcast_wait_image(handcast_rig* rig, handcast_image* image, int timeout_ms) {
-  if (image) *image = {};
-  return with(rig, "handcast_wait_image", [&]() -> Result<void> {
-    if (!image) return missing("handcast_wait_image", "image");
-    const auto deadline = deadline_in("handcast_wait_image", timeout_ms);
-    if (!deadline) return tl::make_unexpected(deadline.error());
-    if (auto come = rig->images.wait(rig->name, "camera.frames", *deadline); !come) return come;
-    const CameraFrame& frame = **rig->images.newest;
-    *image = {frame.pixels(), static_cast<int32_t>(frame.width_px),
-              static_cast<int32_t>(frame.height_px), frame.header.frame_id, frame.header.origin_ns};
-    return {};
-  });
+  return wait_for(rig, &handcast_rig::images, "handcast_wait_image", "image", image, timeout_ms,
+                  image_of);
 }
 
 handcast_result handcast_wait_hands(handcast_rig* rig, handcast_both_hands* hands, int timeout_ms) {
-  if (hands) *hands = {};
-  return with(rig, "handcast_wait_hands", [&]() -> Result<void> {
-    if (!hands) return missing("handcast_wait_hands", "hands");
-    const auto deadline = deadline_in("handcast_wait_hands", timeout_ms);
-    if (!deadline) return tl::make_unexpected(deadline.error());
-    if (auto come = rig->hands.wait(rig->name, "pose.hands", *deadline); !come) return come;
-    *hands = handcast::client::both_hands(**rig->hands.newest);
-    return {};
-  });
+  return wait_for(rig, &handcast_rig::hands, "handcast_wait_hands", "hands", hands, timeout_ms,
+                  handcast::client::both_hands);
 }
 
 handcast_result handcast_send_hands(handcast_rig* rig, const handcast_both_hands* hands) {
-  return with(rig, "handcast_send_hands", [&]() -> Result<void> {
-    if (!hands) return missing("handcast_send_hands", "hands");
-    auto message = message_of(*hands);
-    message.header.frame_id = ++rig->poses.number;
-    return rig->poses.prepare(rig->name, kGuestPoses, message).and_then([&] {
-      return rig->poses.send(message.header.origin_ns, message);
-    });
-  });
+  return send(rig, &handcast_rig::poses, "handcast_send_hands", "hands", hands);
 }
 
 handcast_result handcast_send_landmarks(handcast_rig* rig, const handcast_landmarks* landmarks) {
-  return with(rig, "handcast_send_landmarks", [&]() -> Result<void> {
-    if (!landmarks) return missing("handcast_send_landmarks", "landmarks");
-    const auto message = message_of(*landmarks);
-    return rig->landmarks.prepare(rig->name, kGuestLandmarks, message).and_then([&] {
-      return rig->landmarks.send(message.header.origin_ns, message);
-    });
-  });
+  return send(rig, &handcast_rig::landmarks, "handcast_send_landmarks", "landmarks", landmarks);
 }
 
 handcast_result handcast_send_image(handcast_rig* rig, const handcast_image* image) {
   return with(rig, "handcast_send_image", [&]() -> Result<void> {
     if (!image || !image->pixels) return missing("handcast_send_image", "image");
+    const auto box = outbox(rig->pictures, "handcast_send_image", camera_of(*image));
+    if (!box) return tl::make_unexpected(box.error());
     const auto head = message_of(*image);
-    if (auto ready = rig->pictures.prepare(rig->name, kGuestImages, head); !ready) return ready;
-    auto loan = rig->pictures.writer->loan();
+    if (auto ready = (*box)->prepare(rig->name, head); !ready) return ready;
+    auto loan = (*box)->writer->loan();
     if (!loan) return fail(Errc::timeout, "handcast_send_image: the rig still reads the last ones");
     if (head.used_bytes() > sizeof(CameraFrame) + loan.tail_bytes())
       return fail(Errc::bad_data,
@@ -232,7 +262,7 @@ handcast_result handcast_send_image(handcast_rig* rig, const handcast_image* ima
                               image->height));
     *loan = head;
     std::memcpy(loan->pixels(), image->pixels, head.used_bytes() - sizeof(CameraFrame));
-    return rig->pictures.send(head.header.origin_ns, std::move(loan));
+    return (*box)->send(head.header.origin_ns, std::move(loan));
   });
 }
 

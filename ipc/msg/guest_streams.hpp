@@ -10,8 +10,10 @@ namespace handcast::msg {
 /// what they read there (check_guest()).
 /// @{
 inline constexpr std::string_view kGuestImages = "guest.camera";
+inline constexpr std::string_view kSecondGuestImages = "guest.camera2";
 inline constexpr std::string_view kGuestPoses = "guest.pose";
 inline constexpr std::string_view kGuestLandmarks = "guest.landmarks";
+inline constexpr std::string_view kSecondGuestLandmarks = "guest.landmarks2";
 /// @}
 
 /// Whether programs outside the rig write to a stream.

@@ -16,7 +16,6 @@ Result<void> check_leap(const Opening&);
 Result<std::unique_ptr<Camera>> open_twin(const Opening&);
 Result<std::unique_ptr<Camera>> open_replay(const Opening&);
 Result<std::unique_ptr<Camera>> open_external(const Opening&);
-Result<void> check_external(const Opening&);
 Result<std::unique_ptr<Camera>> open_v4l2(const Opening&);
 
 static constexpr std::array kBackends{
@@ -40,7 +39,7 @@ static constexpr std::array kBackends{
     CameraBackend{.name = "external",
                   .sentence = "A program of your own, in any language, by handcast.h.",
                   .open = open_external,
-                  .check = check_external},
+                  .check = service::kSeenWhenUp},
     CameraBackend{.name = "v4l2",
                   .sentence = "A webcam, by the kernel's own interface (Video4Linux).",
                   .open = open_v4l2,

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "ipc/msg/guest_streams.hpp"
 #include "services/camera/camera.hpp"
 #include "services/runtime/guest_stream.hpp"
 
@@ -50,23 +49,14 @@ class ExternalCamera final : public Camera {
   std::uint64_t number_ = 0;
 };
 
-Result<void> check_viewpoint(const Opening& with) {
-  if (with.at == config::Viewpoint::first) return {};
-  return fail(Errc::bad_config, "other programs send images of the first camera only");
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Camera>> open_external(const Opening& with) {
-  if (auto first = check_viewpoint(with); !first) return tl::make_unexpected(first.error());
-  auto guests = service::GuestStream<msg::CameraFrame>::open(with.ring, msg::kGuestImages,
-                                                             with.settings.process.wait);
+  auto guests = service::GuestStream<msg::CameraFrame>::open(
+      with.ring, "guest." + config::name_at(with.at, "camera"), with.settings.process.wait);
   if (!guests) return tl::make_unexpected(guests.error());
   return std::make_unique<ExternalCamera>(std::move(*guests), with.camera.model.width_px,
                                           with.camera.model.height_px);
 }
-
-/// Whether a program sends is seen only when the rig is up.
-Result<void> check_external(const Opening& with) { return check_viewpoint(with); }
 
 }  // namespace handcast::camera

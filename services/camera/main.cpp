@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "config/second_view.hpp"
-#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/largest_images.hpp"
 #include "services/camera/camera.hpp"
 #include "services/runtime/context.hpp"
@@ -118,9 +117,8 @@ static daemon::ServiceDescription describe(Viewpoint at) {
                                    .settings = {"camera.rate_hz", "camera.exposure_ms"},
                                    .backends = service::describe_rows(camera::camera_backends())};
   auto description = service::describe_at(at, std::move(first));
-  if (at == Viewpoint::second) return description;
-  description.publishes.emplace_back("camera2.frames");
-  description.subscribes.emplace_back(msg::kGuestImages);
+  description.subscribes.push_back("guest." + config::name_at(at, "camera"));
+  if (at == Viewpoint::first) description.publishes.emplace_back("camera2.frames");
   return description;
 }
 

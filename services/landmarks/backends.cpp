@@ -17,7 +17,6 @@ Result<std::unique_ptr<Detector>> open_network_detector(const Opening&);
 Result<std::unique_ptr<Detector>> open_twin(const Opening&);
 Result<std::unique_ptr<Detector>> open_replay(const Opening&);
 Result<std::unique_ptr<Detector>> open_external(const Opening&);
-Result<void> check_external(const Opening&);
 
 static constexpr DetectorBackend kTwin{
     .name = "twin",
@@ -38,7 +37,7 @@ static constexpr DetectorBackend kExternal{
     .name = "external",
     .sentence = "A program of your own, in any language, by handcast.h.",
     .open = open_external,
-    .check = check_external};
+    .check = service::kSeenWhenUp};
 
 /// One row for each landmark model, all with open_network_detector, which opens the model that
 /// landmarks.backend names.

@@ -2,7 +2,6 @@
 #include <span>
 #include <utility>
 
-#include "ipc/msg/guest_streams.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/runtime/guest_stream.hpp"
 
@@ -44,18 +43,10 @@ class ExternalDetector final : public Detector {
 }  // namespace
 
 Result<std::unique_ptr<Detector>> open_external(const Opening& with) {
-  if (with.at != config::Viewpoint::first)
-    return fail(Errc::bad_config, "other programs send landmarks of the first camera only");
-  auto guests = service::GuestStream<msg::Landmarks>::open(with.ring, msg::kGuestLandmarks,
-                                                           with.settings.process.wait);
+  auto guests = service::GuestStream<msg::Landmarks>::open(
+      with.ring, "guest." + config::name_at(with.at, "landmarks"), with.settings.process.wait);
   if (!guests) return tl::make_unexpected(guests.error());
   return std::make_unique<ExternalDetector>(std::move(*guests), with.camera.model);
-}
-
-/// Whether a program sends is seen only when the rig is up.
-Result<void> check_external(const Opening& with) {
-  if (with.at == config::Viewpoint::first) return {};
-  return fail(Errc::bad_config, "other programs send landmarks of the first camera only");
 }
 
 }  // namespace handcast::landmarks

@@ -3,7 +3,6 @@
 
 #include "ipc/base/log.hpp"
 #include "ipc/msg/detector_note.hpp"
-#include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/same_calibration.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/tracker/tracker_hints.hpp"
@@ -82,7 +81,7 @@ static service::Instance instance_at(Viewpoint at) {
            .subscribes = {"camera.frames", "pose.hands"},
            .settings = {"landmarks.fallback"},
            .backends = service::describe_rows(landmarks::detector_backends())});
-  if (at == Viewpoint::first) description.subscribes.emplace_back(msg::kGuestLandmarks);
+  description.subscribes.push_back("guest." + config::name_at(at, "landmarks"));
   return {std::move(description), [at](service::Context& context) { run_landmarks(context, at); },
           [at](const config::Rig& rig, const calib::Calibration& calibration) {
             return landmarks::check_detector(rig, calibration, at);

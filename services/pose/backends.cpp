@@ -23,7 +23,6 @@ Result<std::unique_ptr<PoseSource>> open_leapc(const config::Rig&, const calib::
 Result<void> check_leapc(const config::Rig&, const calib::Calibration&, const Surroundings&);
 Result<std::unique_ptr<PoseSource>> open_external(const config::Rig&, const calib::Calibration&,
                                                   const Surroundings&);
-Result<void> check_external(const config::Rig&, const calib::Calibration&, const Surroundings&);
 Result<std::unique_ptr<PoseSource>> open_stereo(const config::Rig&, const calib::Calibration&,
                                                 const Surroundings&);
 
@@ -44,7 +43,7 @@ static constexpr std::array kBackends{
     PoseBackend{.name = "external",
                 .sentence = "A program of your own, in any language, by handcast.h.",
                 .open = open_external,
-                .check = check_external},
+                .check = service::kSeenWhenUp},
     PoseBackend{.name = "none",
                 .sentence = "No tracker: lifts the landmarks of the camera image to poses.",
                 .open = open_none,

@@ -44,9 +44,4 @@ Result<std::unique_ptr<PoseSource>> open_external(const config::Rig& rig, const 
   return std::make_unique<ExternalPose>(std::move(*guests));
 }
 
-/// Whether a program sends is seen only when the rig is up.
-Result<void> check_external(const config::Rig&, const calib::Calibration&, const Surroundings&) {
-  return {};
-}
-
 }  // namespace handcast::pose

@@ -29,8 +29,10 @@ class HandcastRig : public RigWithRings {
     give({{"camera.frames", images_.fd()},
           {"pose.hands", hands_.fd()},
           {"guest.camera", pictures_.fd()},
+          {"guest.camera2", second_pictures_.fd()},
           {"guest.pose", poses_.fd()},
-          {"guest.landmarks", landmarks_.fd()}});
+          {"guest.landmarks", landmarks_.fd()},
+          {"guest.landmarks2", second_landmarks_.fd()}});
     ASSERT_EQ(turning([this] { return handcast_rig_open("", &rig_); }), HANDCAST_OK) << sentence_;
   }
   void TearDown() override { handcast_rig_close(rig_); }
@@ -61,9 +63,12 @@ class HandcastRig : public RigWithRings {
 
   ipc::Segment images_ = ring<msg::CameraFrame>("camera.frames", msg::CameraFrame::bytes(4, 3)),
                pictures_ = ring<msg::CameraFrame>("guest.camera", msg::CameraFrame::bytes(4, 3)),
+               second_pictures_ =
+                   ring<msg::CameraFrame>("guest.camera2", msg::CameraFrame::bytes(4, 3)),
                hands_ = ring<msg::HandPoses>("pose.hands"),
                poses_ = ring<msg::HandPoses>("guest.pose"),
-               landmarks_ = ring<msg::Landmarks>("guest.landmarks");
+               landmarks_ = ring<msg::Landmarks>("guest.landmarks"),
+               second_landmarks_ = ring<msg::Landmarks>("guest.landmarks2");
   handcast_rig* rig_ = nullptr;
   std::string sentence_;
 };
@@ -135,7 +140,7 @@ TEST_F(HandcastRig, SendsLandmarks) {
 TEST_F(HandcastRig, SendsImages) {
   auto reader = must(ipc::Reader<msg::CameraFrame>::watch(again(pictures_)));
   const std::array<std::uint8_t, 12> pixels{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-  handcast_image image{pixels.data(), 4, 3, 6, handcast_now()};
+  handcast_image image{pixels.data(), 4, 3, 6, handcast_now(), 0};
   const auto send = [&] { return turning([&] { return handcast_send_image(rig_, &image); }); };
   ASSERT_EQ(send(), HANDCAST_OK) << sentence_;
   const auto sent = must(reader.latest(Deadline::now()));
@@ -143,11 +148,34 @@ TEST_F(HandcastRig, SendsImages) {
   EXPECT_EQ(sent->header.origin_ns, image.time_ns);
   EXPECT_EQ(sent->pixels()[11], 12);
   for (const auto& [width, height] : {std::pair{4, 4}, {0, 3}, {-1, -1}, {1 << 30, 1 << 30}}) {
-    image = {pixels.data(), width, height, 7, handcast_now()};
+    image = {pixels.data(), width, height, 7, handcast_now(), 0};
     EXPECT_EQ(send(), HANDCAST_BAD_DATA) << width << "x" << height;
   }
-  image = {nullptr, 4, 3, 8, handcast_now()};
+  image = {nullptr, 4, 3, 8, handcast_now(), 0};
   EXPECT_EQ(send(), HANDCAST_WRONG_USE);
+}
+
+TEST_F(HandcastRig, SendsWhatIsOfASecondCamera) {
+  auto images = must(ipc::Reader<msg::CameraFrame>::watch(again(second_pictures_)));
+  auto hands = must(ipc::Reader<msg::Landmarks>::watch(again(second_landmarks_)));
+  const std::array<std::uint8_t, 12> pixels{};
+  handcast_image image{pixels.data(), 4, 3, 6, handcast_now(), 1};
+  handcast_landmarks found{};
+  found.time_ns = handcast_now();
+  found.camera = 1;
+  const auto send_image = [&] {
+    return turning([&] { return handcast_send_image(rig_, &image); });
+  };
+  const auto send = [&] { return turning([&] { return handcast_send_landmarks(rig_, &found); }); };
+  EXPECT_EQ(send_image(), HANDCAST_OK) << sentence_;
+  EXPECT_EQ(send(), HANDCAST_OK) << sentence_;
+  EXPECT_EQ(must(images.latest(Deadline::now()))->header.frame_id, 6u);
+  EXPECT_TRUE(hands.latest(Deadline::now()));
+  image.camera = 2;
+  found.camera = -1;
+  EXPECT_EQ(send_image(), HANDCAST_WRONG_USE);
+  EXPECT_EQ(send(), HANDCAST_WRONG_USE);
+  EXPECT_THAT(sentence_, HasSubstr("`camera` is neither 0 nor 1"));
 }
 
 TEST_F(HandcastRig, WhatTheRigWouldLeaveOutIsNotSentAndTheSentenceSaysWhy) {

@@ -57,6 +57,22 @@ TEST(ExternalCamera, PassesOnTheImagesThatAProgramSends) {
   EXPECT_THAT(other.error().what, testing::HasSubstr("8x3 px"));
 }
 
+TEST(ExternalCamera, TheSecondOneHasARingOfItsOwn) {
+  test::GuestRing<msg::CameraFrame> program("guest.camera2", msg::CameraFrame::bytes(8, 6));
+  config::Rig rig;
+  rig.camera2.backend = "external";
+  auto calibration = calib::reference_rig();
+  calibration.camera2 = calib::SecondCamera{{}, calibration.camera, glm::dmat4(1)};
+  std::string asked;
+  const auto source =
+      open_camera(rig, calibration, 0, config::Viewpoint::second, [&](std::string_view stream) {
+        asked = stream;
+        return program.open()(stream);
+      });
+  ASSERT_TRUE(source) << source.error().what;
+  EXPECT_EQ(asked, "guest.camera2");
+}
+
 TEST(Camera, AnUnknownBackEndIsRefusedWithTheKnownOnesNamed) {
   config::Rig rig;
   rig.camera.backend = "polaroid";

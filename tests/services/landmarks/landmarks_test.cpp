@@ -143,6 +143,22 @@ TEST(ExternalDetector, RemovesTheDistortionOfTheLensFromWhatAProgramSends) {
   EXPECT_GT(std::abs(image.x - 10), 1) << "the lens must distort";
 }
 
+TEST(ExternalDetector, ThatOfTheSecondCameraHasARingOfItsOwn) {
+  test::GuestRing<msg::Landmarks> program("guest.landmarks2");
+  config::Rig rig;
+  rig.landmarks2.backend = "external";
+  auto calibration = calib::reference_rig();
+  calibration.camera2 = calib::SecondCamera{{}, calibration.camera, glm::dmat4(1)};
+  std::string asked;
+  const auto detector =
+      open_detector(rig, calibration, 0, config::Viewpoint::second, [&](std::string_view stream) {
+        asked = stream;
+        return program.open()(stream);
+      });
+  ASSERT_TRUE(detector) << detector.error().what;
+  EXPECT_EQ(asked, "guest.landmarks2");
+}
+
 TEST(TwinDetector, TakesAsLongAsTheRigSays) {
   config::Rig rig;
   rig.twin.detector.age_ms = 25;
