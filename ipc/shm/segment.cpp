@@ -223,6 +223,12 @@ Result<void> Segment::restrict_to(Access access) {
   return {};
 }
 
+// By the file: the mapping may be read-only.
+bool Segment::repair_header() const {
+  if (std::memcmp(data_, &header_, sizeof header_) == 0) return false;
+  return ::pwrite(fd_.get(), &header_, sizeof header_, 0) == static_cast<ssize_t>(sizeof header_);
+}
+
 std::string Segment::stream() const { return text_of(header_.stream); }
 std::uint64_t Segment::type_hash() const { return header_.type_hash; }
 std::size_t Segment::payload_bytes() const { return header_.payload_bytes; }

@@ -57,6 +57,10 @@ class Segment {
   /// `access`, or the kernel refused).
   Result<void> restrict_to(Access access);
 
+  /// Writes the header again if another process has overwritten it, so that the ring can be opened.
+  /// Returns whether it has.
+  bool repair_header() const;
+
   /// Moves the mapping; `other` is empty afterwards.
   /// @{
   Segment(Segment&&) noexcept;

@@ -7,6 +7,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/daemon/stop_signal.hpp"
+#include "ipc/msg/guest_streams.hpp"
 
 namespace handcast::service {
 namespace {
@@ -77,8 +78,11 @@ Result<ipc::Segment> Context::open_segment(std::string_view stream) const {
   auto fd = supervision_.ring(stream);
   if (!fd) return tl::make_unexpected(fd.error());
   auto segment = ipc::Segment::open(std::move(*fd));
-  if (!segment) return fail_in(fmt::format("ring '{}'", stream), segment.error());
-  return segment;
+  if (segment) return segment;
+  auto error = segment.error();
+  // A program outside the rig may have overwritten its header, which the supervisor repairs.
+  if (msg::is_for_guests(stream)) error.code = Errc::unavailable;
+  return fail_in(fmt::format("ring '{}'", stream), error);
 }
 
 void Context::ready() {

@@ -183,6 +183,7 @@ void RigRunner::tick() {
   beat(now);
   forgive_a_standstill(now);
   rig_.recorder.poll();
+  rig_.rings.repair_headers();
   for (const auto& service : rig_.services.all()) service->tick(now, rig_.look_at(*service, now));
   if (rig_.stops()) return hurry_when_late(now);
   if (options_.seconds && now - rig_.started_ns >= seconds_to_ns(*options_.seconds))

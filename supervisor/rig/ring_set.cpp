@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "ipc/base/log.hpp"
 #include "ipc/ring/row_owner.hpp"
 #include "supervisor/base/process.hpp"
 #include "supervisor/succession/adoption.hpp"
@@ -74,6 +75,12 @@ std::vector<SavedRing> RingSet::saved() const {
   std::vector<SavedRing> saved;
   for (const auto& ring : rings_) saved.push_back({ring.stream(), inode_of(ring.fd()), ring.fd()});
   return saved;
+}
+
+void RingSet::repair_headers() const {
+  for (const auto& ring : rings_)
+    if (ring.repair_header())
+      log::warning("another program had overwritten the header of the ring {}", ring.stream());
 }
 
 void RingSet::sweep_dead_rows() const {

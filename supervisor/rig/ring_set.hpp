@@ -27,6 +27,9 @@ class RingSet {
   daemon::Rings descriptors() const;
   /// The rings for a successor of the supervisor.
   std::vector<SavedRing> saved() const;
+  /// Repairs the headers that a program outside the rig has overwritten: a service that starts
+  /// later could not open its rings.
+  void repair_headers() const;
   /// Frees the rows and leases of readers that died.
   void sweep_dead_rows() const;
 
