@@ -8,6 +8,7 @@
 #include <span>
 
 #include "config/content_chain.hpp"
+#include "config/guests.hpp"
 #include "config/keep_out.hpp"
 #include "config/live_files.hpp"
 #include "config/measured.hpp"
@@ -26,6 +27,11 @@ namespace {
 constexpr std::string_view kPaths[] = {"calibration",
                                        "camera.replay.directory",
                                        "camera.leap.bring_up",
+                                       "camera.external.folder",
+                                       "camera2.external.folder",
+                                       "pose.external.folder",
+                                       "landmarks.external.folder",
+                                       "landmarks2.external.folder",
                                        "pose.openxr.runtime",
                                        "pose.leapc.library",
                                        "camera2.replay.directory",
@@ -60,6 +66,18 @@ void resolve_paths(const Listing& listing, const std::filesystem::path& folder,
     const auto fault = whole ? fault_of_path(*whole, folder) : whole.error().what;
     if (!fault.empty()) faults.add(fmt::format("{}: {}: {}", where, path, fault));
     text = fault.empty() ? (folder / *whole).lexically_normal().string() : "";
+  }
+}
+
+/// The program of somebody starts in the folder of the file that names it.
+void place_guests(const Listing& listing, const std::filesystem::path& folder) {
+  for (const auto& guest : kGuests) {
+    const auto setting = [&](const char* name) {
+      return find_setting(listing, guest.section() + name);
+    };
+    auto& place = *std::get<std::string*>(setting(".folder")->target);
+    const auto& command = *std::get<std::vector<std::string>*>(setting(".command")->target);
+    if (place.empty() && !command.empty()) place = folder.string();
   }
 }
 
@@ -136,11 +154,13 @@ Result<Rig> parse_layers(Rig rig, std::span<const NamedText> layers,
     const auto folder = std::filesystem::absolute(file, gone).parent_path();
     resolve_paths(listing, folder, file, faults);
     resolve_contents(listing, folder, file, faults);
+    place_guests(listing, folder);
   }
   for (const auto& setting : settings) apply_assignment(setting, listing, faults);
   const auto here = std::filesystem::current_path(gone);
   resolve_paths(listing, here, "--set", faults);
   resolve_contents(listing, here, "--set", faults);
+  place_guests(listing, here);
   check_together(rig, layers.front().path, faults);
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   return rig;
@@ -196,6 +216,8 @@ static const Process* find_process(const Rig& rig, std::string_view service) {
   if (service == "content") return &rig.content.process;
   if (service == "desk") return &rig.desk.process;
   if (service == "observer") return &rig.observer.process;
+  for (const auto& guest : kGuests)
+    if (service == guest.service) return find_process(rig, guest.feeds);
   return nullptr;
 }
 

@@ -87,8 +87,8 @@ const Camera& camera_at(const Rig& rig, Viewpoint at);
 /// The section of the landmark detector at a viewpoint.
 const Landmarks& landmarks_at(const Rig& rig, Viewpoint at);
 
-/// The section [NAME.process] of the service with this name ("camera"); the defaults if there is no
-/// such service.
+/// The section [NAME.process] of the service with this name ("camera"); of a guest, that of the
+/// service that it feeds (guests.hpp); the defaults if there is no such service.
 Process process_of(const Rig& rig, std::string_view service);
 /// Whether a rig file has a section [NAME.process] for this service.
 bool has_process(std::string_view service);

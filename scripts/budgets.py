@@ -13,14 +13,15 @@ SHOW_FILES = 790
 MEDIAN_LINES = 64  # of a source, at least: a file is a subject, not a function. The aim is 70.
 FOLDED_LINES = 300  # a header with one user is part of it, unless the file becomes longer than this
 UNFOLDED_HEADERS = 3  # the most that may be left to fold. The aim is none.
-DOCUMENT_WORDS = 51_500  # without the generated ones
+DOCUMENT_WORDS = 52_500  # without the generated ones
 DOCUMENT_COLUMNS = 120
 README_LINES = 120
 DECISION_LINES = 6
 
-# What runs while there is light: neither its tools, laboratory and studies nor the drivers, of which a rig uses one or two.
+# What runs while there is light: neither its tools, laboratory and studies nor the drivers, of which a rig uses one or two;
+# the service that runs a stranger's program is one of them.
 NOT_IN_THE_SHOW = re.compile(r"services/(tools|lab|studies)/|calib/solve/|supervisor/look/|"
-                             r"services/(camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
+                             r"services/(guest|camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
 GENERATED = ("config/REFERENCE.md", "docs/lab/")
 NO_DOCUMENTS = re.compile(r"(build[^/]*|out|\.git|tests)/")
 # The header of a handcast_embed(): the build writes its source.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/sections/drift.hpp"
+#include "config/sections/external.hpp"
 #include "config/sections/handover.hpp"
 #include "config/sections/leap.hpp"
 #include "config/sections/leapc.hpp"
@@ -160,6 +161,7 @@ struct Camera {
   V4l2 v4l2;
   Leap leap;
   CameraReplay replay;
+  External external;
   Process process;
 };
 
@@ -180,6 +182,7 @@ void describe(Visitor& visitor, Camera& camera) {
   visitor.section("leap", camera.leap,
                   "For backend = \"leap\": a Leap Motion Controller, read over USB.");
   visitor.section("replay", camera.replay, "For backend = \"replay\".");
+  visitor.section("external", camera.external, kOfExternal);
   visitor.section("process", camera.process, "The process of the service.");
 }
 
@@ -208,6 +211,7 @@ struct Pose {
   OpenXr openxr;
   PoseStereo stereo;
   Replay replay;
+  External external;
   Drift drift;
   Process process;
 };
@@ -233,6 +237,7 @@ void describe(Visitor& visitor, Pose& pose) {
   visitor.section("replay", pose.replay,
                   "For backend = \"replay\": timestamps.npy with joints_{left,right}.npy and "
                   "bones_{left,right}.npy.");
+  visitor.section("external", pose.external, kOfExternal);
   visitor.section("drift", pose.drift,
                   "The watch over the calibration: has the tracker moved against the camera?");
   visitor.section("process", pose.process, "The process of the service.");
@@ -245,6 +250,7 @@ struct Landmarks {
   std::string models;
   int hands = 2;
   Replay replay;
+  External external;
   Process process;
 };
 
@@ -270,6 +276,7 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
   visitor.section("replay", landmarks.replay,
                   "For backend = \"replay\": landmarks_{left,right}.npy, (n,21,2) or with sigmas "
                   "(n,21,3), with landmarks_timestamps.npy.");
+  visitor.section("external", landmarks.external, kOfExternal);
   visitor.section("process", landmarks.process, "How the service runs.");
 }
 

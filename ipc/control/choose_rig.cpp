@@ -4,13 +4,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "ipc/base/join.hpp"
 #include "ipc/control/rig_address.hpp"
 
 namespace handcast::control {
 
-Result<std::string> choose_rig(const std::string& name) {
+namespace {
+
+/// The rig that has started this program ($HANDCAST_RIG, see ipc/daemon/contract.hpp); "" if none.
+std::string rig_around() {
+  const char* const address = std::getenv("HANDCAST_RIG");
+  return address ? name_in(address) : "";
+}
+
+}  // namespace
+
+Result<std::string> choose_rig(const std::string& wanted) {
+  const auto name = wanted.empty() ? rig_around() : wanted;
   const auto rigs = living_rigs();
   if (rigs.empty()) {
     const auto others = join(rigs_of_others(), "; ");

@@ -9,6 +9,8 @@ install(DIRECTORY config/rigs config/calibrations config/sweeps DESTINATION ${sh
 install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts)
 install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
 install(FILES scripts/handcast.py DESTINATION ${share}/python)
+# For the programs that a rig of the build folder starts.
+configure_file(scripts/handcast.py ${CMAKE_BINARY_DIR}/share/handcast/python/handcast.py COPYONLY)
 
 # The documents, in the folders that their links lead to.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DECISIONS.md LICENSE

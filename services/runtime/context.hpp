@@ -134,9 +134,9 @@ struct Instance {
 };
 
 /// The main function of all daemons: parses the command line, loads the rig and runs the body, or,
-/// with --check, the check, of the instance that --as names, or else of the first one. Returns the
-/// exit code.
-int run(std::span<const Instance> instances, int argc, char** argv);
+/// with --check, the check, of the instance that --as names, or else of the first one. `program`:
+/// the name of the program, if it is not that of the first instance. Returns the exit code.
+int run(std::span<const Instance> instances, int argc, char** argv, std::string_view program = {});
 /// The same for a program that is one service.
 int run(const daemon::ServiceDescription& description, int argc, char** argv,
         const std::function<void(Context&)>& body, const Check& check = {});

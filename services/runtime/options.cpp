@@ -38,9 +38,10 @@ void add_as(CommandLine& line, std::span<const Instance> instances, const Instan
 }  // namespace
 
 Result<Options> parse_options(std::span<const Instance> instances, int argc,
-                              const char* const* argv) {
-  const auto& program = instances.front().description;
-  CommandLine line("handcast-" + program.name, program.summary,
+                              const char* const* argv, std::string_view program) {
+  const auto& first = instances.front().description;
+  CommandLine line(fmt::format("handcast-{}", program.empty() ? first.name : program),
+                   first.summary,
                    "`handcast up RIG.toml` starts this program together with the rest of the rig "
                    "and hands it its rings.");
   Options options{.instance = &instances.front()};

@@ -81,11 +81,11 @@ daemon::ServiceDescription describe_at(config::Viewpoint at, daemon::ServiceDesc
   return first;
 }
 
-int run(std::span<const Instance> instances, int argc, char** argv) {
-  const auto& program = instances.front().description.name;
+int run(std::span<const Instance> instances, int argc, char** argv, std::string_view name) {
+  const auto program = name.empty() ? instances.front().description.name : std::string(name);
   log::set_program(program);
   return run_program("handcast-" + program, argc, argv, [&](int count, char** words) {
-    const auto options = parse_options(instances, count, words);
+    const auto options = parse_options(instances, count, words, program);
     if (!options) {
       log::error("{}", options.error().what);
       return kExitUsage;

@@ -38,7 +38,7 @@ Service::Service(ServiceSpec spec, const Launch& launch, EventLoop& loop, OnNoti
 
 Rules Service::rules() const {
   return {.name = spec_.name,
-          .ready_ns = seconds_to_ns(launch_.ready_s),
+          .ready_ns = seconds_to_ns(spec_.ready_s > 0 ? spec_.ready_s : launch_.ready_s),
           .stop_ns = seconds_to_ns(launch_.stop_s),
           .silent_ns = seconds_to_ns(launch_.silent_s),
           .publishes = stream_.has_value(),

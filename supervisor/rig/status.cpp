@@ -62,7 +62,8 @@ ServiceFigures figures_of(const Service& service, const RigView& rig) {
   if (is_on_fallback(service, rig)) figures.instead_of = service.spec().backend;
   if (exit) figures.last_exit = exit->describe();
   figures.reason = reason_of(service);
-  if (!is_well(service)) figures.log = service.log().last(kLastWords);
+  if (!is_well(service) || service.spec().instance_of == "guest")  // its output is of interest
+    figures.log = service.log().last(kLastWords);
   figures.pid = service.pid();
   figures.standby_pid = service.standby_pid();
   figures.restarts = service.restarts();

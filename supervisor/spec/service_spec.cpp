@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "supervisor/spec/service_spec.hpp"
 
+#include "config/guests.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/content_picture.hpp"
@@ -39,6 +40,12 @@ ipc::RingSpec guest_ring(const char* stream) {
                                               msg::GuestPicture::bytes(kLargest_px, kLargest_px));
 }
 
+ipc::RingSpec guest_images(std::string_view stream) {
+  return ipc::RingSpec::of<msg::CameraFrame>(
+      std::string(stream), kPictureSlots, kNewestOnly,
+      msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px));
+}
+
 std::vector<ipc::RingSpec> all_streams() {
   using ipc::RingSpec;
   return {
@@ -60,11 +67,12 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::LiveSettings>(std::string(msg::kLiveSettings), 8, kNewestOnly),
       guest_ring("guest.left"),
       guest_ring("guest.right"),
-      RingSpec::of<msg::CameraFrame>(
-          std::string(msg::kGuestImages), kPictureSlots, kNewestOnly,
-          msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
+      guest_images(msg::kGuestImages),
+      guest_images(msg::kSecondGuestImages),
       RingSpec::of<msg::HandPoses>(std::string(msg::kGuestPoses), kGuestHistory, kWithHistory),
       RingSpec::of<msg::Landmarks>(std::string(msg::kGuestLandmarks), kGuestHistory, kWithHistory),
+      RingSpec::of<msg::Landmarks>(std::string(msg::kSecondGuestLandmarks), kGuestHistory,
+                                   kWithHistory),
   };
 }
 
@@ -94,6 +102,18 @@ void add_second_view(const config::Rig& rig, std::vector<ServiceSpec>& services)
                         .backend = rig.landmarks2.backend,
                         .needs = {has_camera ? "camera2" : "camera"},
                         .instance_of = "landmarks"});
+}
+
+/// The programs of other people, after the services that they feed.
+void add_guests(const config::Rig& rig, std::vector<ServiceSpec>& services) {
+  constexpr double kSlack_s = 5;  // a guest ends itself before
+  for (const auto& guest : config::kGuests)
+    if (guest.is_wanted(rig))
+      services.push_back(
+          {.name = std::string(guest.service),
+           .needs = {std::string(guest.feeds)},
+           .instance_of = "guest",
+           .ready_s = config::first_message_within_s(guest.settings(rig)) + kSlack_s});
 }
 
 /// Whether the desk has anything to serve.
@@ -140,10 +160,12 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
   if (rig.observer.enabled)
     services.push_back({"observer", "", "", rig.observer.rate_hz, "", {"projector"}});
   if (rig.supervisor.metrics_port > 0) services.push_back({"exporter", "", "", 0});
+  add_guests(rig, services);
   for (auto& service : services) {
     if (service.name == "landmarks") service.fallback = rig.landmarks.fallback;
     if (service.name == "landmarks2") service.fallback = rig.landmarks2.fallback;
     service.process = config::process_of(rig, service.name);
+    if (service.instance_of == "guest") service.process.standby = false;  // one program sends
     service.fingerprint = fingerprint_of(service.name, rig, catalogue);
   }
   return services;

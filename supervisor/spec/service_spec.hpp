@@ -32,6 +32,7 @@ struct ServiceSpec {
   bool has_safe_state = false;
   /// The service whose program it is an instance of: "camera" for camera2; "" for its own program.
   std::string instance_of{};
+  double ready_s = 0;  ///< how long its start may take; 0: supervisor.ready_s
 };
 
 /// The begin of the command line of a service: its program in this folder, which --as tells what it

@@ -260,6 +260,16 @@ TEST(Paths, OfAFileAreFoundFromAFolderThatWasDeleted) {
   EXPECT_EQ(rig->calibration, "/rigs/c.toml");
 }
 
+TEST(Paths, AProgramOfSomebodyStartsInTheFolderOfTheFileThatNamesIt) {
+  const std::string command = "pose.external.command = ['python3', 'my_tracker.py']\n";
+  EXPECT_EQ(parse_rig(command, kFile)->pose.external.folder, "/rigs");
+  EXPECT_EQ(parse_rig(command + "pose.external.folder = 'mine'\n", kFile)->pose.external.folder,
+            "/rigs/mine");
+  EXPECT_EQ(parse_rig("", kFile, {"pose.external.command=['./mine']"})->pose.external.folder,
+            std::filesystem::current_path());
+  EXPECT_EQ(parse_rig("", kFile)->pose.external.folder, "");
+}
+
 TEST(Paths, ATildeIsTheHomeFolderInEverySettingThatNamesAFile) {
   const std::string home = std::getenv("HOME") ? std::getenv("HOME") : "";
   if (home.empty()) GTEST_SKIP() << "HOME is not set";

@@ -3,7 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include "ipc/control/choose_rig.hpp"
+#include "ipc/control/rig_address.hpp"
+#include "ipc/daemon/contract.hpp"
 #include "tests/supervisor/control/control_fixture.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -29,6 +33,14 @@ TEST_F(ChooseRig, TheOnlyRigNeedsNoNameAndOneOfSeveralDoes) {
   EXPECT_THAT(unnamed.error().what, HasSubstr("desk, wall; choose one with --rig"));
   EXPECT_EQ(choose_rig("wall").value(), "wall");
   EXPECT_FALSE(choose_rig("floor"));
+}
+
+TEST_F(ChooseRig, AProgramThatARigHasStartedMeansThatOne) {
+  const auto desk = ControlServer::listen("desk", loop_, refuse);
+  const auto wall = ControlServer::listen("wall", loop_, refuse);
+  const system_test::Variable around(daemon::kRigVariable, control::address_of("wall")->text);
+  EXPECT_EQ(control::choose_rig("").value(), "wall");
+  EXPECT_EQ(control::choose_rig("desk").value(), "desk");
 }
 
 }  // namespace

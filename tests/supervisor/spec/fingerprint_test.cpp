@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "config/guests.hpp"
 #include "config/settings/settings.hpp"
 #include "tests/config/every_setting.hpp"
 #include "tests/scratch.hpp"
@@ -253,6 +254,7 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
     read.merge(read_by(service, with_second_tracker("openxr")));
   }
   read.merge(read_by("pose", pair("twin", "twin")));
+  for (const auto& guest : config::kGuests) read.merge(read_by(std::string(guest.service), {}));
   for (const auto* camera2 : {"twin", "replay", "aravis", "v4l2", "leap"})
     read.merge(read_by("camera2", pair(camera2, "twin")));
   for (const auto* landmarks2 : {"twin", "replay", "mediapipe"})
