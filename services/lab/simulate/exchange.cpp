@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -21,9 +23,25 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kHead = 4;  ///< columns before those of the joints or landmarks
-constexpr std::size_t kJointColumns = 8, kPointColumns = 4;
-constexpr std::size_t kPoseColumns = kHead + msg::kJoints * kJointColumns;
-constexpr std::size_t kLandmarkColumns = kHead + msg::kLandmarks * kPointColumns;
+
+/// What a row has after its times and side: how certain the hand is, then `parts` of each place.
+struct Layout {
+  std::string_view certainty;
+  std::size_t places;
+  std::span<const std::string_view> parts;
+
+  std::size_t columns() const { return kHead + places * parts.size(); }
+  /// The columns of a place.
+  std::span<const double> place(std::span<const double> row, std::size_t number) const {
+    return row.subspan(kHead + number * parts.size(), parts.size());
+  }
+};
+
+constexpr std::array<std::string_view, 8> kJointParts{"x",  "y",  "z",  "qx",
+                                                      "qy", "qz", "qw", "radius"};
+constexpr std::array<std::string_view, 4> kPointParts{"x", "y", "confidence", "sigma"};
+constexpr Layout kPoses{"confidence", msg::kJoints, kJointParts};
+constexpr Layout kLandmarks{"presence", msg::kLandmarks, kPointParts};
 
 using Row = std::span<const double>;
 
@@ -86,9 +104,8 @@ msg::HandPose pose_of(Row row) {
   pose.side = static_cast<msg::Side>(row[2]);
   pose.confidence = static_cast<float>(row[3]);
   for (std::size_t i = 0; i < pose.joints.size(); ++i) {
-    const auto cell = [&](std::size_t k) {
-      return static_cast<float>(row[kHead + i * kJointColumns + k]);
-    };
+    const auto cells = kPoses.place(row, i);
+    const auto cell = [&](std::size_t k) { return static_cast<float>(cells[k]); };
     pose.joints[i] = {{cell(0), cell(1), cell(2)}, {cell(3), cell(4), cell(5), cell(6)}, cell(7)};
   }
   return pose;
@@ -100,7 +117,7 @@ msg::HandLandmarks landmarks_of(Row row, const calib::CameraModel& lens) {
   hand.side = static_cast<msg::Side>(row[2]);
   hand.presence = static_cast<float>(row[3]);
   for (std::size_t i = 0; i < hand.points.size(); ++i) {
-    const auto cells = row.subspan(kHead + i * kPointColumns, kPointColumns);
+    const auto cells = kLandmarks.place(row, i);
     const auto straight = lens.undistort({cells[0], cells[1]});
     hand.points[i] = {static_cast<float>(straight.x), static_cast<float>(straight.y),
                       static_cast<float>(cells[2]), static_cast<float>(cells[3])};
@@ -148,19 +165,21 @@ Result<std::vector<SensorEvent>> messages_of(const Table& table, const HandOf& h
   return events;
 }
 
-std::string names_of(const char* certainty, std::size_t count,
-                     std::initializer_list<const char*> parts) {
-  std::string line = fmt::format("origin_ns,arrival_ns,side,{}", certainty);
-  for (std::size_t i = 0; i < count; ++i)
-    for (const auto* part : parts) line += fmt::format(",{}_{}", part, i);
-  return line + '\n';
+/// Reads a file whose rows `hand_of` makes hands from.
+template <class Message, class HandOf>
+Result<std::vector<SensorEvent>> read(const fs::path& file, const Layout& layout,
+                                      const HandOf& hand_of) {
+  const auto table = read_table(file, layout.columns());
+  if (!table) return tl::make_unexpected(table.error());
+  auto events = messages_of<Message>(*table, hand_of);
+  return events ? std::move(events) : fail_in(file.string(), events.error());
 }
 
-std::string pose_names() {
-  return names_of("confidence", msg::kJoints, {"x", "y", "z", "qx", "qy", "qz", "qw", "radius"});
-}
-std::string landmark_names() {
-  return names_of("presence", msg::kLandmarks, {"x", "y", "confidence", "sigma"});
+std::string names_of(const Layout& layout) {
+  std::string line = fmt::format("origin_ns,arrival_ns,side,{}", layout.certainty);
+  for (std::size_t i = 0; i < layout.places; ++i)
+    for (const auto part : layout.parts) line += fmt::format(",{}_{}", part, i);
+  return line + '\n';
 }
 
 std::string head_of(std::int64_t origin_ns, std::int64_t arrival_ns) {
@@ -184,80 +203,83 @@ std::string line_of(const msg::HandLandmarks& hand, const calib::CameraModel& le
   return line + '\n';
 }
 
-std::string no_hand(std::size_t columns) {
-  std::string line = "-1";
-  for (std::size_t i = 3; i < columns; ++i) line += ",0";
-  return line + '\n';
+/// Adds a row for each hand, of which `line` makes the columns behind the times.
+template <class Message, class Line>
+void add(const Message& message, const std::string& head, const Layout& layout, const Line& line,
+         std::string& text) {
+  if (message.count == 0) {
+    text += head + "-1";
+    for (std::size_t i = 3; i < layout.columns(); ++i) text += ",0";
+    text += '\n';
+  }
+  for (const auto& hand : std::span(message.hands).first(message.count)) text += head + line(hand);
 }
 
 void add(const msg::HandPoses& poses, const std::string& head, std::string& text) {
-  if (poses.count == 0) text += head + no_hand(kPoseColumns);
-  for (const auto& pose : std::span(poses.hands).first(poses.count)) text += head + line_of(pose);
+  add(
+      poses, head, kPoses, [](const auto& hand) { return line_of(hand); }, text);
 }
 
 void add(const msg::Landmarks& found, const std::string& head, const calib::CameraModel& lens,
          std::string& text) {
-  if (found.count == 0) text += head + no_hand(kLandmarkColumns);
-  for (const auto& hand : std::span(found.hands).first(found.count))
-    text += head + line_of(hand, lens);
+  add(
+      found, head, kLandmarks, [&](const auto& hand) { return line_of(hand, lens); }, text);
+}
+
+/// A message of the true hands: `seen_of` gives what is seen of a side, which `take` puts into a
+/// hand.
+template <class Message, class SeenOf, class Take>
+Message true_message(const SeenOf& seen_of, const Take& take) {
+  Message message;
+  for (const auto side : {msg::Side::left, msg::Side::right})
+    if (const auto seen = seen_of(side)) {
+      auto& hand = message.hands[message.count++];
+      hand.side = side;
+      take(*seen, hand);
+    }
+  return message;
 }
 
 /// The true hands as a tracker without errors would report them.
 msg::HandPoses true_poses(const twin::Twin& twin, std::int64_t time_ns) {
-  msg::HandPoses poses;
-  for (const auto side : {msg::Side::left, msg::Side::right}) {
-    const auto joints = twin.joints(side, time_ns);
-    if (!joints) continue;
-    auto& pose = poses.hands[poses.count++];
-    pose.side = side;
-    pose.confidence = 1;
-    for (std::size_t i = 0; i < pose.joints.size(); ++i) {
-      const auto& frame = (*joints)[i];
-      const auto axes = glm::normalize(glm::quat_cast(glm::mat3(frame)));
-      pose.joints[i] = {{frame[3].x, frame[3].y, frame[3].z},
-                        {axes.x, axes.y, axes.z, axes.w},
-                        joints::kMeanRadii_m[i]};
-    }
-  }
-  return poses;
+  return true_message<msg::HandPoses>([&](msg::Side side) { return twin.joints(side, time_ns); },
+                                      [](const auto& frames, msg::HandPose& pose) {
+                                        pose.confidence = 1;
+                                        for (std::size_t i = 0; i < pose.joints.size(); ++i) {
+                                          const auto& frame = frames[i];
+                                          const auto axes =
+                                              glm::normalize(glm::quat_cast(glm::mat3(frame)));
+                                          pose.joints[i] = {{frame[3].x, frame[3].y, frame[3].z},
+                                                            {axes.x, axes.y, axes.z, axes.w},
+                                                            joints::kMeanRadii_m[i]};
+                                        }
+                                      });
 }
 
 msg::Landmarks true_landmarks(const twin::Twin& twin, std::int64_t time_ns) {
-  msg::Landmarks landmarks;
-  for (const auto side : {msg::Side::left, msg::Side::right}) {
-    const auto places_px = twin.landmarks(side, time_ns);
-    if (!places_px) continue;
-    auto& hand = landmarks.hands[landmarks.count++];
-    hand.side = side;
-    hand.presence = 1;
-    for (std::size_t i = 0; i < hand.points.size(); ++i)
-      hand.points[i] = {(*places_px)[i].x, (*places_px)[i].y, 1, 0};
-  }
-  return landmarks;
+  return true_message<msg::Landmarks>([&](msg::Side side) { return twin.landmarks(side, time_ns); },
+                                      [](const auto& places_px, msg::HandLandmarks& hand) {
+                                        hand.presence = 1;
+                                        for (std::size_t i = 0; i < hand.points.size(); ++i)
+                                          hand.points[i] = {places_px[i].x, places_px[i].y, 1, 0};
+                                      });
 }
 
 }  // namespace
 
 Result<std::vector<SensorEvent>> read_poses(const fs::path& file) {
-  const auto table = read_table(file, kPoseColumns);
-  if (!table) return tl::make_unexpected(table.error());
-  auto events = messages_of<msg::HandPoses>(*table, pose_of);
-  return events ? std::move(events) : fail_in(file.string(), events.error());
+  return read<msg::HandPoses>(file, kPoses, pose_of);
 }
 
 Result<std::vector<SensorEvent>> read_landmarks(const fs::path& file,
                                                 const calib::CameraModel& lens) {
-  const auto table = read_table(file, kLandmarkColumns);
-  if (!table) return tl::make_unexpected(table.error());
-  auto events =
-      messages_of<msg::Landmarks>(*table, [&](Row row) { return landmarks_of(row, lens); });
-  return events ? std::move(events) : fail_in(file.string(), events.error());
+  return read<msg::Landmarks>(file, kLandmarks, [&](Row row) { return landmarks_of(row, lens); });
 }
 
 Result<void> write_exchange(const fs::path& folder, const std::vector<SensorEvent>& events,
                             const std::vector<Exposure>& exposures, const twin::Twin& twin,
                             const calib::CameraModel& lens) {
-  std::string poses = pose_names(), landmarks = landmark_names(), true_hands = poses,
+  std::string poses = names_of(kPoses), landmarks = names_of(kLandmarks), true_hands = poses,
               true_points = landmarks, images = "image,origin_ns,arrival_ns\n";
   for (const auto& event : events) {
     if (const auto* hands = std::get_if<msg::HandPoses>(&event.message))

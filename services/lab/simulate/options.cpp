@@ -31,16 +31,8 @@ CommandLine::Setter setting(Options& options, const std::string& path) {
   };
 }
 
-}  // namespace
-
-Result<Options> parse(int argc, const char* const* argv) {
-  CommandLine line("handcast simulate",
-                   "Runs the cascade of a rig on its digital twin in virtual time and scores the "
-                   "light. An example: handcast simulate config/rigs/twin.toml",
-                   notes());
-  Options options;
-  bool joints_only = false;
-  line.add("RIG.toml", options.rig_file, "The rig file");
+/// The rig, and what happens in it.
+void add_run(CommandLine& line, Options& options) {
   line.add("--motion MOTION", setting(options, "twin.motion"),
            "Motion of the true hands: the folder of a recording, or builtin:NAME (sets "
            "twin.motion)");
@@ -52,6 +44,20 @@ Result<Options> parse(int argc, const char* const* argv) {
            "Changes any setting; config/REFERENCE.md lists them");
   line.add("--seconds S", options.seconds, "Scored time", {0.01, 86400});
   line.add("--warm-up S", options.warm_up_s, "Time before it that is not scored", {0, 3600});
+  line.add("--quiet", options.quiet, "Prints no progress");
+}
+
+}  // namespace
+
+Result<Options> parse(int argc, const char* const* argv) {
+  CommandLine line("handcast simulate",
+                   "Runs the cascade of a rig on its digital twin in virtual time and scores the "
+                   "light. An example: handcast simulate config/rigs/twin.toml",
+                   notes());
+  Options options;
+  bool joints_only = false;
+  line.add("RIG.toml", options.rig_file, "The rig file");
+  add_run(line, options);
   line.add("--draw-every N", options.draw_every,
            "Draws and scores every N-th projector frame; the others are only tracked", {0, 100000});
   line.add("--joints-only", joints_only,
@@ -72,11 +78,28 @@ Result<Options> parse(int argc, const char* const* argv) {
            "Scores the poses of a .csv or .npy file in place of the tracker's");
   line.add("--landmarks FILE", options.landmarks_file,
            "Scores the landmarks of a .csv or .npy file in place of the detector's");
-  line.add("--quiet", options.quiet, "Prints no progress");
   auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   options.text = std::move(*text);
   if (joints_only) options.draw_every = 0;
+  return options;
+}
+
+Result<Options> parse_export(int argc, const char* const* argv) {
+  CommandLine line(
+      "handcast export-twin",
+      "Writes what the digital twin's sensors deliver of a motion, and the true hands, "
+      "for a method that runs outside handcast: `handcast simulate --record` does the "
+      "same, and --poses or --landmarks score the results.");
+  Options options;
+  line.add("RIG.toml", options.rig_file, "The rig file");
+  line.add("DIR", options.record_directory,
+           "Where the images and tables go (docs/operating/your-own-tracker.md)");
+  add_run(line, options);
+  auto text = line.parse(argc, argv);
+  if (!text) return tl::make_unexpected(text.error());
+  options.text = std::move(*text);
+  options.draw_every = 0;
   return options;
 }
 

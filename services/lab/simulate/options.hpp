@@ -31,5 +31,7 @@ struct Options {
 /// Parses the command line. Errors: bad_config (an unknown option, a missing value or rig file, a
 /// number out of range).
 Result<Options> parse(int argc, const char* const* argv);
+/// The same of `handcast export-twin`, which records and draws nothing.
+Result<Options> parse_export(int argc, const char* const* argv);
 
 }  // namespace handcast::simulate

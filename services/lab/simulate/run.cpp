@@ -9,6 +9,8 @@
 
 #include "calib/sub_frames.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/command_line.hpp"
+#include "ipc/base/exit_code.hpp"
 #include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/write_whole.hpp"
@@ -134,6 +136,15 @@ Result<std::string> run(const Options& options) {
       return tl::make_unexpected(written.error());
   }
   return fault_of(*json, options);
+}
+
+int run_verb(std::string_view verb, const Result<Options>& options) {
+  const auto text = options.map([](const auto& each) { return each.text; });
+  if (const auto code = answered(verb, text)) return *code;
+  const auto fault = run(*options);
+  if (fault && fault->empty()) return kExitDone;
+  fmt::print(stderr, "{}: {}\n", verb, printable(fault ? *fault : fault.error().what));
+  return fault ? kExitBadResult : exit_code_of(fault.error());
 }
 
 }  // namespace handcast::simulate
