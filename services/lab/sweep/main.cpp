@@ -21,7 +21,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
-  std::string output, shard;
+  std::string output, shard, record;
   int jobs = 0;
   bool fresh = false, list = false, merge = false, quiet = false;
 };
@@ -32,7 +32,8 @@ const char* const kFooter = R"(A plan is a TOML file. The paths in it are relati
   rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24 (or draw_hz = 30)    joints_only = false
   [settings]    settings of all runs, e.g. twin.tracker.age_ms = 15; settings_from = "FILE.toml": a file of such settings
   [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"; with from = ["NAME"], it has
-                the settings of variants above, too, and the rig of the first
+                the settings of variants above, too, and the rig of the first; with landmarks = "DIR" or poses = "DIR", the results
+                of another method, a file for each case: DIR/000.csv or .npy and so on
   [grid]        lists of values, e.g. twin.speed = [1, 2, 3]; all combinations are run. Several [[grid]] are run one after the other
 config/REFERENCE.md lists the settings; config/sweeps holds plans.
 
@@ -66,7 +67,7 @@ int list_runs(const Plan& plan, const std::vector<Run>& runs, const Shard& shard
   for (const auto& run : runs) {
     if (!shard.has(run)) continue;
     const auto rig = rig_of(plan, run);
-    const auto absent = rig ? why_absent(*rig) : std::nullopt;
+    const auto absent = rig ? why_absent(plan, run, *rig) : std::nullopt;
     fmt::print("{:6}  {}{}\n", run.index, describe_run(plan, run),
                absent ? fmt::format("  [left out: {}]", *absent) : "");
   }
@@ -93,6 +94,8 @@ int sweep(const Options& options) {
   const auto expansion = expand(*plan);
   if (!expansion) return complain(expansion.error());
   if (options.list) return list_runs(*plan, expansion->runs, *shard);
+  if (!options.record.empty() && plan->variants.size() > 1)
+    return complain({Errc::bad_config, "--record: the plan has several variants"});
 
   const auto file = output_of(options, *plan, *shard);
   auto results =
@@ -100,7 +103,8 @@ int sweep(const Options& options) {
   if (!results) return complain(results.error());
   stop_on_signals();
   const auto outcome =
-      run_all(*plan, expansion->runs, {*shard, options.jobs, options.quiet}, **results, stop);
+      run_all(*plan, expansion->runs, {*shard, options.jobs, options.quiet, options.record},
+              **results, stop);
   return outcome ? report(*plan, *outcome, file) : complain(outcome.error());
 }
 
@@ -134,6 +138,9 @@ static int run_verb(int argc, char** argv) {
   line.add("--list", options.list, "Prints the runs and does none");
   line.add("--fresh", options.fresh, "Discards the content of the file of results");
   line.add("--merge", options.merge, "Merges the results of shards into one file");
+  line.add("--record DIR", options.record,
+           "Draws nothing, and writes the images, messages and true hands of each case to "
+           "DIR/000 and so on, as simulate --record does; for a plan of one variant");
   line.add("--quiet", options.quiet, "Prints no progress");
   if (const auto code = line.answered(argc, argv)) return *code;
   if (options.merge) return merge_files(options);

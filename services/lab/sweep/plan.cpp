@@ -58,7 +58,7 @@ void describe(Visitor& visitor, Head& head) {
 
 /// The settings at the top level of a [[variant]].
 struct VariantHead {
-  std::string name, rig;
+  std::string name, rig, poses, landmarks;
   std::vector<std::string> from;
   ReadByHand settings;
 };
@@ -71,6 +71,10 @@ void describe(Visitor& visitor, VariantHead& head) {
       "from", head.from,
       "Variants above whose settings it has, too; of a setting that several have, the last "
       "counts, and its own counts most. Its rig is that of the first, if it has none.");
+  visitor.field("poses", head.poses,
+                "Folder with the results of a tracker, 000.csv or .npy and so on: a file for each "
+                "case, in the order of the grids.");
+  visitor.field("landmarks", head.landmarks, "The same of a detector.");
   visitor.section("settings", head.settings, "Settings of the variant's runs.");
 }
 
@@ -295,6 +299,8 @@ class Reader {
     for (auto& setting : fixed(section(sections, "settings")))
       set(read.settings, std::move(setting));
     read.rig_file = read.rig_file.lexically_normal();
+    if (!head.poses.empty()) read.poses = (folder_ / head.poses).lexically_normal();
+    if (!head.landmarks.empty()) read.landmarks = (folder_ / head.landmarks).lexically_normal();
     read.rig_text = rig_text(read.rig_file, element.line);
     return read;
   }

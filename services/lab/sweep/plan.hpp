@@ -30,6 +30,11 @@ struct Variant {
   std::filesystem::path rig_file;  ///< absolute
   std::string rig_text;            ///< content of rig_file
   std::vector<Axis> settings;      ///< fixed settings
+  /// Folders with the results of another method that take the place of the tracker's and of the
+  /// detector's, a file for each case: see results_file(). Absolute; "" for none.
+  /// @{
+  std::filesystem::path poses{}, landmarks{};
+  /// @}
 };
 
 /// The content of a plan file. The paths in it are relative to the file.
@@ -52,6 +57,9 @@ struct Variant {
 ///     from = ["one_euro"]              # the settings of variants above, and the rig of the first
 ///                                      # of them; the last count most, and its own before all
 ///     settings.cascade.predict.method = "hold"
+///     [[variant]]
+///     name = "mine"
+///     landmarks = "mine"               # or poses: the folder of a method's results
 ///     [grid]                           # all combinations are run
 ///     twin.motion = ["builtin:wave", "../../data/wave"]
 ///     twin.speed = [1, 2, 3]

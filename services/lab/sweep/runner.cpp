@@ -97,23 +97,29 @@ void Progress::show() {
                        terminal_ ? "" : "\n"));
 }
 
-simulate::Options options_of(const Plan& plan, const config::Rig& rig) {
+simulate::Options options_of(const Plan& plan, const Run& run, const config::Rig& rig,
+                             const std::filesystem::path& record) {
   simulate::Options options;
+  const auto number = case_of(plan, run);
+  options.poses_file = results_file(plan.variants[run.variant].poses, number);
+  options.landmarks_file = results_file(plan.variants[run.variant].landmarks, number);
+  if (!record.empty()) options.record_directory = record / fmt::format("{:03}", number);
   options.seconds = plan.seconds;
   options.warm_up_s = plan.warm_up_s;
   options.draw_every =
       plan.draw_hz > 0
           ? std::max(static_cast<int>(std::lround(rig.projector.rate_hz / plan.draw_hz)), 1)
           : plan.draw_every;
+  if (!record.empty()) options.draw_every = 0;
   return options;
 }
 
-Result<nlohmann::json> score(const Plan& plan, const Run& run) try {
+Result<nlohmann::json> score(const Plan& plan, const Run& run, const std::string& record) try {
   const auto rig = rig_of(plan, run);
   if (!rig) return tl::make_unexpected(rig.error());
   const auto calibration = calib::load_calibration(rig->calibration, rig->projector.packing);
   if (!calibration) return tl::make_unexpected(calibration.error());
-  const auto options = options_of(plan, *rig);
+  const auto options = options_of(plan, run, *rig, record);
   auto metrics = simulate::score(*rig, *calibration, options);
   if (!metrics) return metrics;
   if (auto why = simulate::why_nothing_was_scored(*metrics, options); !why.empty())
@@ -142,7 +148,7 @@ std::vector<const Run*> to_do(const Plan& plan, const std::vector<Run>& runs, co
       continue;
     }
     const auto rig = rig_of(plan, run);
-    if (const auto why = rig ? why_absent(*rig) : std::nullopt) {
+    if (const auto why = rig ? why_absent(plan, run, *rig) : std::nullopt) {
       absent[*why].push_back(run.index);
       ++outcome.absent;
     } else {
@@ -158,12 +164,13 @@ std::vector<const Run*> to_do(const Plan& plan, const std::vector<Run>& runs, co
 class Workers {
  public:
   Workers(const Plan& plan, const std::vector<const Run*>& todo, Results& results,
-          const std::atomic<bool>& stop, bool quiet)
+          const std::atomic<bool>& stop, const Work& work)
       : plan_(plan),
         todo_(todo),
         results_(results),
         stop_(stop),
-        progress_(plan.name, todo.size(), quiet) {}
+        record_(work.record),
+        progress_(plan.name, todo.size(), work.quiet) {}
 
   Result<void> run(int jobs, Outcome& outcome) {
     {
@@ -187,7 +194,7 @@ class Workers {
   }
 
   void one(const Run& run) {
-    const auto json = score(plan_, run);
+    const auto json = score(plan_, run, record_);
     const auto say = [&](std::string_view what) {
       progress_.say(fmt::format("sweep {}: run {} ({}): {}", plan_.name, run.index,
                                 describe_run(plan_, run), what));
@@ -209,6 +216,7 @@ class Workers {
   const std::vector<const Run*>& todo_;
   Results& results_;
   const std::atomic<bool>& stop_;
+  std::string record_;
   Progress progress_;
   std::atomic<std::size_t> next_ = 0, done_ = 0, failed_ = 0;
   std::atomic<bool> full_ = false;
@@ -230,7 +238,7 @@ Result<Outcome> run_all(const Plan& plan, const std::vector<Run>& runs, const Wo
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const int jobs =
       std::min(work.jobs > 0 ? work.jobs : cores, std::max(1, static_cast<int>(todo.size())));
-  const auto worked = Workers(plan, todo, results, stop, work.quiet).run(jobs, outcome);
+  const auto worked = Workers(plan, todo, results, stop, work).run(jobs, outcome);
   const auto sorted = results.sort();
   if (!worked) return tl::make_unexpected(worked.error());
   if (!sorted) return tl::make_unexpected(sorted.error());

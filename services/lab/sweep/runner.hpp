@@ -13,6 +13,9 @@ struct Work {
   Shard shard;         ///< part of the plan
   int jobs = 0;        ///< worker threads; 0: one per core
   bool quiet = false;  ///< prints no progress
+  /// Where the images, messages and true hands of each case are written, in a folder with its
+  /// number (`simulate --record`); nothing is drawn. "": nowhere.
+  std::string record{};
 };
 
 /// Numbers of runs of the shard.

@@ -154,6 +154,9 @@ Result<Expansion> expand(const Plan& plan) {
       hash.add(describe_run(plan, run));
       hash.add(without_machine(*rig, folder, contents));
       hash.add(unnamed_files(*rig, contents));
+      const auto& variant = plan.variants[run.variant];
+      for (const auto& folder : {variant.poses, variant.landmarks})
+        if (!folder.empty()) hash.add(contents.of(results_file(folder, case_of(plan, run))));
     } else if (std::ranges::find(known, rig.error().what) == known.end()) {
       known.push_back(rig.error().what);
       faults.add(fmt::format("{}: run {} ({}): {}", plan.file.string(), run.index,
@@ -182,6 +185,36 @@ std::optional<std::string> why_absent(const config::Rig& rig) {
   if (motion.starts_with("builtin:") || kind == std::filesystem::file_type::directory || hidden)
     return std::nullopt;
   return fmt::format("twin.motion: there is no folder {}", motion);
+}
+
+std::size_t case_of(const Plan& plan, const Run& run) {
+  std::size_t cases = 0;
+  for (const auto& grid : plan.grids) {
+    std::size_t combinations = 1;
+    for (const auto& axis : grid) combinations *= axis.choices.size();
+    cases += combinations;
+  }
+  return run.index % cases;
+}
+
+std::string results_file(const std::filesystem::path& folder, std::size_t number) {
+  if (folder.empty()) return {};
+  std::error_code absent;
+  const auto array = folder / fmt::format("{:03}.npy", number);
+  return std::filesystem::exists(array, absent)
+             ? array.string()
+             : (folder / fmt::format("{:03}.csv", number)).string();
+}
+
+std::optional<std::string> why_absent(const Plan& plan, const Run& run, const config::Rig& rig) {
+  if (auto why = why_absent(rig)) return why;
+  std::error_code absent;
+  for (const auto& folder :
+       {plan.variants[run.variant].poses, plan.variants[run.variant].landmarks})
+    if (!folder.empty() &&
+        !std::filesystem::exists(results_file(folder, case_of(plan, run)), absent))
+      return fmt::format("{} has no results of the case", folder.string());
+  return std::nullopt;
 }
 
 Result<Shard> parse_shard(const std::string& text) {

@@ -41,9 +41,18 @@ Result<config::Rig> rig_of(const Plan& plan, const Run& run);
 /// Prints the variant and the axes of a run: "one_euro, twin.speed=2".
 std::string describe_run(const Plan& plan, const Run& run);
 
+/// The number of the case of a run: of the same settings of the grids, all variants have the same.
+std::size_t case_of(const Plan& plan, const Run& run);
+/// The file of a case, 007.npy or 007.csv, in a folder of results (Variant::poses); "" if `folder`
+/// is empty.
+std::string results_file(const std::filesystem::path& folder, std::size_t number);
+
 /// The reason why this machine cannot do a run, i.e. that the folder of its motion does not
-/// exist, or WebXR's hand is not installed; empty if it can.
+/// exist, WebXR's hand is not installed, or a method has no results of it; empty if it can.
+/// @{
 std::optional<std::string> why_absent(const config::Rig& rig);
+std::optional<std::string> why_absent(const Plan& plan, const Run& run, const config::Rig& rig);
+/// @}
 
 /// One part of a sweep on several machines: the runs whose index is `index` modulo `count`.
 struct Shard {

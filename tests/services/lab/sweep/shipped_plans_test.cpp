@@ -114,6 +114,47 @@ TEST(ShippedPlans, TheUnseenMotionsAreScoredWithTheRigsOfTheComparison) {
         << name;
 }
 
+TEST(ShippedPlans, TheBenchmarkHasTheRigsOfTheComparison) {
+  std::map<std::string, config::Rig> compared;
+  for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
+  compared.emplace("paper_at_our_speed", compared.at("paper_network"));
+  for (const auto* plan : {"benchmark", "benchmark_stress"}) {
+    const auto rigs = rigs_of(plan);
+    EXPECT_EQ(rigs.size(), 4u) << plan;
+    for (const auto& [name, rig] : rigs) {
+      auto others = config::differences(rig, compared.at(name));
+      std::erase(others, "twin.tracker.age_ms");  // the first stress
+      EXPECT_THAT(others, testing::UnorderedElementsAre("twin.motion", "twin.seed"))
+          << plan << ' ' << name;
+    }
+  }
+}
+
+/// The seeds of a plan, as in its file.
+std::set<int> people_of(const std::filesystem::path& file) {
+  const auto plan = load_plan(file);
+  EXPECT_TRUE(plan) << plan.error().what;
+  std::set<int> people;
+  const auto expansion = expand(*plan);
+  for (const auto& run : expansion->runs) people.insert(rig_of(*plan, run)->twin.seed);
+  return people;
+}
+
+TEST(ShippedPlans, NoOtherPlanHasAPersonOfTheBenchmark) {
+  constexpr int kFirst = 101;
+  int plans = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source_root() / "config/sweeps")) {
+    if (!entry.is_regular_file()) continue;
+    ++plans;
+    const auto people = people_of(entry.path());
+    if (entry.path().stem().string().starts_with("benchmark"))
+      EXPECT_GE(*people.begin(), kFirst) << entry.path();
+    else
+      EXPECT_LT(*people.rbegin(), kFirst - 1) << entry.path();
+  }
+  EXPECT_GT(plans, 15);
+}
+
 TEST(ShippedPlans, JitterAndFirstSecondsAreOfTheRigsOfTheComparison) {
   std::map<std::string, config::Rig> compared;
   for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);

@@ -31,14 +31,15 @@ twin.seed = [1, 2, 3]
 class SweepTest : public testing::Test {
  protected:
   Outcome sweep(const std::string& toml, const std::string& name, int jobs = 1, Shard shard = {},
-                bool stopped = false) {
+                bool stopped = false, const std::string& record = "") {
     const auto plan = plan_of(toml);
     EXPECT_TRUE(plan) << plan.error().what;
     const auto expansion = expand(*plan);
     auto results = Results::open(file(name), heading_of(*plan, *expansion, "1.0"), false);
     EXPECT_TRUE(results) << results.error().what;
     const std::atomic<bool> stop = stopped;
-    const auto outcome = run_all(*plan, expansion->runs, {shard, jobs, true}, **results, stop);
+    const auto outcome =
+        run_all(*plan, expansion->runs, {shard, jobs, true, record}, **results, stop);
     EXPECT_TRUE(outcome) << outcome.error().what;
     return *outcome;
   }
@@ -46,6 +47,28 @@ class SweepTest : public testing::Test {
 
   test::Scratch scratch_;
 };
+
+TEST_F(SweepTest, TheResultsOfAMethodAreScoredInTheirCases) {
+  const std::string cases =
+      "joints_only = true\nseconds = 0.2\nwarm_up_s = 0.05\n[settings]\n"
+      "landmarks.backend = \"twin\"\n[grid]\ntwin.seed = [1, 2]\n";
+  const std::string mine =
+      cases + "[[variant]]\nname = \"own\"\n[[variant]]\nname = \"mine\"\nlandmarks = \"" +
+      file("mine").string() + "\"\n";
+  EXPECT_EQ(sweep(cases, "recorded.csv", 1, {}, false, file("cases")).scored, 2u);
+  std::filesystem::create_directory(file("mine"));
+  for (const auto* number : {"000", "001"})
+    std::filesystem::copy(file("cases") / number / "landmarks.csv",
+                          file("mine") / (std::string(number) + ".csv"));
+  EXPECT_EQ(sweep(mine, "mine.csv").scored, 4u);
+  const auto table = read_table(file("mine.csv"));
+  const auto column = std::ranges::find(table->heading.columns, "landmark_mm_mean") -
+                      table->heading.columns.begin();
+  for (const std::size_t number : {0u, 1u})
+    EXPECT_EQ(table->rows[number][column], table->rows[number + 2][column]) << number;
+  std::filesystem::remove(file("mine/001.csv"));
+  EXPECT_EQ(sweep(mine, "part.csv").absent, 1u);
+}
 
 TEST_F(SweepTest, TheNumberOfThreadsDoesNotChangeTheFile) {
   EXPECT_EQ(sweep(kTiny, "one.csv", 1).scored, 6u);
