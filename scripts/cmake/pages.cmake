@@ -6,7 +6,7 @@ file(CREATE_LINK ${CMAKE_SOURCE_DIR}/scripts/pages ${share}/pages SYMBOLIC)
 install(DIRECTORY scripts/pages DESTINATION ${HANDCAST_INSTALL_SHAREDIR}
   PATTERN program.in EXCLUDE PATTERN __pycache__ EXCLUDE)
 
-foreach(verb calibration-page chart report)
+foreach(verb benchmark calibration-page chart report)
   set(program ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/handcast-${verb})
   configure_file(scripts/pages/program.in ${program} @ONLY FILE_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)

@@ -33,7 +33,27 @@ A: speed against accuracy. B: where methods fail, and the failure atlas. C: erro
 cameras and projectors bring. The charts need the results of these plans in config/sweeps: A and C ladder.toml, and times.toml for frame
 times; B stress.toml and failures.toml; hardware.toml. scripts/charts runs all of them."""
 
+BENCHMARK_FOOTER = """\
+For a method of your own: --images DIR writes the images and times of all cases to DIR/benchmark/000 and so on, and to
+DIR/benchmark_stress; put the results of your method into FOLDER/benchmark/000.csv (or .npy) and so on, and into
+FOLDER/benchmark_stress for chart B; --landmarks FOLDER or --poses FOLDER then adds its row. docs/benchmark.md has the rules.
+Recordings are read from HANDCAST_DATA; without them their cases are left out."""
+
 VERBS = {
+    "benchmark": Verb(
+        "Scores the methods of a fixed set of motions, people, meshes and faults, and one of your own.",
+        "pages.benchmark.write",
+        (Option("--landmarks", "Adds a detector: the folder of its results, a file for each case", "FOLDER"),
+         Option("--poses", "Adds a tracker: the same", "FOLDER"),
+         Option("--name", "What it is called (default: mine)", "NAME", "mine"),
+         Option("--images", "Scores nothing, and writes the images, times and true hands of all cases", "DIR"),
+         Option("--out", "Folder for benchmark.json, benchmark.md, benchmark.html and the charts (default: out/benchmark)", "DIR",
+                "out/benchmark"),
+         Option("--people", "Takes N people in place of those of the benchmark, to check a row", "N"),
+         Option("--jobs", "Number of simultaneous runs (default: one per core)", "N"),
+         Option("--plans", "Folder of other plans of the same names", "DIR"),
+         Option("--title", "Heading of the page", "TEXT", "handcast benchmark")),
+        BENCHMARK_FOOTER),
     "calibration-page": Verb(
         "Makes report.html of what `handcast calibrate`, which calls this program, has measured.",
         "pages.calibration.write",

@@ -15,7 +15,7 @@ NUMBER = re.compile(r"-?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)
 
 # The settings of a rig that are in no section; all others have a dot in their paths, and metrics have none.
 PLAIN_SETTINGS = ("name", "calibration")
-LADDER_AXES = ("twin.motion", "twin.speed", "twin.seed")
+LADDER_AXES = ("twin.motion", "twin.shape.mesh", "twin.speed", "twin.seed")
 DETECTOR = "detector"  # the metric that is a word
 TIMES_PLAN = "times"   # the plan that only measures the times of frames
 
@@ -42,7 +42,7 @@ class Run:
     metrics: dict = field(default_factory=dict)   # measured metrics, by column
 
     def turned(self):
-        """The paths of the axes other than motion, speed and seed."""
+        """The paths of the axes other than motion, mesh, speed and seed."""
         return sorted(path for path in self.settings if path not in LADDER_AXES)
 
     def number(self, path):
@@ -55,7 +55,7 @@ class Source:
     """Summary of one file of results."""
     plan: str
     planned: int     # runs of the plan
-    is_ladder: bool  # the only axes are motion, speed and seed
+    is_ladder: bool  # the only axes are motion, mesh, speed and seed
     scored: int = 0
     failed: int = 0
 
@@ -71,7 +71,7 @@ class Results:
         return {source.plan for source in self.sources if source.is_ladder == is_ladder}
 
     def ladder(self):
-        """The runs of the plans whose only axes are motion, speed and seed, without those that only measure times."""
+        """The runs of the plans whose only axes are motion, mesh, speed and seed, without those that only measure times."""
         plans = self.plans(is_ladder=True) - {TIMES_PLAN}
         return [run for run in self.runs if run.plan in plans]
 
