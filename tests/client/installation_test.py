@@ -15,6 +15,8 @@ import re
 import shlex
 import shutil
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -29,7 +31,7 @@ PROGRAMS = {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks"
             "handcast-detect", "handcast-report", "handcast-chart", "handcast-devices", "handcast-calibration-page",
             "handcast-doctor", "handcast-init", "handcast-record", "handcast-calibrate", "handcast-template",
             "handcast-content", "handcast-desk", "handcast-gallery", "handcast-lamp",
-            "handcast-try"}
+            "handcast-try", "handcast-guest", "handcast-export-twin", "handcast-benchmark"}
 OPTIONAL = {"handcast-dlp", "handcast-exporter", "handcast-preview", "handcast-study"}
 LINE = re.compile(r"frame (\d+) for ([\d.]+) ms:(?: image ([\d.]+) ms)?"
                   r"(?: pose ([\d.]+) ms)?(?: landmarks ([\d.]+) ms)? old")
@@ -213,10 +215,10 @@ class AProgramOfSomebodyElse(unittest.TestCase):
         return self.start(PYTHON, SOURCE / name, *arguments, **more, LD_LIBRARY_PATH=str(tree / "lib"),
                           PYTHONPATH=str(tree / "share/handcast/python"))
 
-    def start_rig(self, *settings):
+    def start_rig(self, *settings, out=None):
         slow = ["camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false", *settings]
         rig = self.start(tree / "bin/handcast", "up", rig_file(),
-                         *(word for setting in slow for word in ("--set", setting)))
+                         *(word for setting in slow for word in ("--set", setting)), *(["--out", out] if out else []))
         for line in rig.stdout:
             if "projector" in line and "ready" in line:
                 break
@@ -297,6 +299,34 @@ class AProgramOfSomebodyElse(unittest.TestCase):
         rings = {row["stream"]: row for row in json.loads(handcast("top", "--once", "--json"))["rings"]}
         self.assertEqual(rings["guest.landmarks"]["published"], 40)
         self.assertGreater(rings["landmarks.hands"]["published"], 20)
+
+    @unittest.skipUnless(has_modules("numpy"), "numpy is not installed")
+    def test_sends_hands_as_osc(self):
+        self.start_rig()
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as inbox:
+            inbox.settimeout(PATIENCE_S)
+            inbox.bind(("127.0.0.1", 0))
+            self.start_python("hands_to_osc.py", "127.0.0.1", inbox.getsockname()[1])
+            address, types, *place_m = struct.unpack(">20s4s3f", inbox.recv(1000))
+        self.assertEqual((address.rstrip(b"\0"), types), (b"/hand/left/thumb", b",fff"))
+        self.assertTrue(0.01 < sum(each * each for each in place_m) ** 0.5 < 2, place_m)
+
+    @unittest.skipUnless(has_modules("numpy"), "numpy is not installed")
+    def test_paints_at_random(self):
+        self.start_rig()
+        painter = self.start_python("paint_at_random.py", "30")
+        self.assertEqual((painter.stdout.read(), painter.wait(PATIENCE_S)), ("", 0))
+        rings = {row["stream"]: row for row in json.loads(handcast("top", "--once", "--json"))["rings"]}
+        self.assertEqual(rings["guest.left"]["published"], 30)
+
+    @unittest.skipUnless(has_modules("matplotlib"), "matplotlib is not installed")
+    def test_plots_the_error_of_the_light(self):
+        out = scratch / "scored"
+        self.start_rig("observer.enabled=true", out=out)
+        picture = scratch / "error.png"
+        plotted = self.start_python("plot_error.py", out, picture, "15").stdout.read()
+        self.assertRegex(plotted, r"^[1-9]\d* points")
+        self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
 
     def test_reads_frames_until_the_rig_is_down(self):
         began_ms = moment_ms()
