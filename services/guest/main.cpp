@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -24,11 +25,25 @@ using service::must;
   std::_Exit(kExitBadResult);
 }
 
+/// Waits until nobody writes to a ring: after a reload, the program before this one still stops.
+static void await_leave(const ipc::Segment& ring) {
+  for (const auto limit = Deadline::in(2s); !limit.passed();
+       sleep_until_ns(now_ns() + to_ns(5ms))) {
+    struct flock lock {};
+    lock.l_type = F_WRLCK;
+    lock.l_whence = SEEK_SET;
+    lock.l_len = 1;  // as ipc::RingWriter takes it
+    if (::fcntl(ring.fd(), F_OFD_GETLK, &lock) != 0 || lock.l_type == F_UNLCK) return;
+  }
+}
+
 /// Runs a program of somebody else until the service ends.
 static void run_guest(service::Context& context, const config::Guest& guest) {
   const auto& settings = guest.settings(context.rig());
   context.stand_by();
-  auto view = ipc::RingView::open(UniqueFd(::dup(must(context.ring(guest.stream())).fd())));
+  const auto ring = must(context.ring(guest.stream()));
+  await_leave(ring);
+  auto view = ipc::RingView::open(UniqueFd(::dup(ring.fd())));
   guest::Watch watch(must(std::move(view)), settings, now_ns());
   auto program = guest::GuestProgram::start(settings);
   if (!program) give_in(program.error().what);

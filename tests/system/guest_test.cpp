@@ -123,6 +123,26 @@ TEST_F(Guest, OneThatFallsSilentIsStartedAgain) {
   expect_no_harm();
 }
 
+TEST_F(Guest, AReloadStartsTheNextOneWhenTheLastOneHasLeft) {
+  std::ofstream(scratch_.path() / "my_tracker.py") << kTracker;
+  const auto rig_file = scratch_.path() / "rig.toml";
+  const auto write = [&](const char* silent_s) {
+    std::ofstream(rig_file) << "name = 'twin'\ncamera.rate_hz = 60\nprojector.rate_hz = 60\n"
+                               "landmarks.backend = 'twin'\n[pose]\nbackend = 'external'\n"
+                               "external.command = ['/usr/bin/python3', 'my_tracker.py']\n"
+                               "external.silent_s = "
+                            << silent_s << "\n";
+  };
+  write("10");
+  const Command rig(scratch_.path(), {"up", rig_file});
+  ASSERT_TRUE(eventually([&] { return tracker() != 0 && works(); })) << rig.log();
+  const auto first = tracker();
+  write("11");
+  EXPECT_EQ(handcast({"reload"}).exit_code, 0);
+  EXPECT_TRUE(eventually([&] { return tracker(first) != 0 && works(); })) << rig.log();
+  EXPECT_EQ(service("pose_guest")["restarts"], 0) << rig.log();
+}
+
 TEST_F(Guest, NoiseInTheHeaderOfItsRingDoesNotOutliveARestart) {
   const auto rig = up({"--set", "pose.backend=external"});
   wait_until_light();
