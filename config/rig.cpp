@@ -216,12 +216,12 @@ static const Process* find_process(const Rig& rig, std::string_view service) {
   if (service == "content") return &rig.content.process;
   if (service == "desk") return &rig.desk.process;
   if (service == "observer") return &rig.observer.process;
-  for (const auto& guest : kGuests)
-    if (service == guest.service) return find_process(rig, guest.feeds);
   return nullptr;
 }
 
 Process process_of(const Rig& rig, std::string_view service) {
+  for (const auto& guest : kGuests)
+    if (service == guest.service) return process_of(rig, guest.feeds);
   const auto* process = find_process(rig, service);
   return process ? *process : Process();
 }

@@ -26,6 +26,7 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
+import sys
 import time
 from typing import Iterator, Mapping, NamedTuple, Optional, Sequence
 
@@ -251,6 +252,8 @@ class Rig(_Handle):
     are read; `pose`, `landmarks` and `camera`, and those of a second camera, `landmarks2` and `camera2`, can be sent."""
 
     def __init__(self, name: str = ""):
+        if numpy is None:
+            raise ImportError(f"handcast.Rig needs numpy, which {sys.executable} does not have")
         super().__init__()
         self._check(self._library.handcast_rig_open(name.encode(), ctypes.byref(self._handle)))
         self.camera, self.hands, self.pose, self.landmarks = Camera(self), Hands(self), Pose(self), Landmarks(self)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -65,7 +66,9 @@ static service::Instance instance_of(const config::Guest& guest) {
       .name = std::string(guest.service),
       .summary = "Runs the program that is the back end `external` of " + std::string(guest.feeds),
       .paced_by = "the program",
-      .settings = {guest.section(), std::string(guest.feeds) + ".process"}};
+      .settings = {guest.section()}};
+  for (const auto* name : {"wait", "priority", "cores", "lock_memory"})
+    description.settings.push_back(fmt::format("{}.process.{}", guest.feeds, name));
   return {std::move(description), [guest](service::Context& context) { run_guest(context, guest); },
           [guest](const config::Rig& rig, const calib::Calibration&) {
             return guest::check_command(guest.settings(rig));

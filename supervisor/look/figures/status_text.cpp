@@ -99,7 +99,7 @@ std::string print_trouble(const ServiceFigures& service) {
 }
 
 std::string print_services(const Figures& figures) {
-  constexpr const char* kRow = "{:<12} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n";
+  constexpr const char* kRow = "{:<16} {:<10} {:>8} {:<10} {:>10} {:>8}  {}\n";
   auto text = fmt::format(fmt::runtime(kRow), "service", "state", "pid", "back end", "up",
                           "restarts", "last exit");
   for (const auto& [name, service] : figures.services) {

@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
@@ -83,6 +85,21 @@ TEST_F(GuestProgramTest, OneThatPrintsWithoutEndCannotKeepItsReader) {
   ASSERT_TRUE(program);
   program->pass_on_output(Deadline::in(100ms));
   EXPECT_FALSE(program->end());
+}
+
+TEST_F(GuestProgramTest, ItDoesNotOutliveTheProcessThatStartedIt) {
+  const auto watcher = fork();
+  if (watcher == 0) {
+    auto program = GuestProgram::start(shell("echo $$ >pid; exec sleep 1000"));
+    pause();
+    _exit(0);
+  }
+  const auto pid = static_cast<pid_t>(std::stoi(text_of("pid")));
+  kill(watcher, SIGKILL);
+  waitpid(watcher, nullptr, 0);
+  const auto limit = Deadline::in(60s);
+  while (kill(pid, 0) == 0 && !limit.passed()) sleep_until_ns(now_ns() + to_ns(1ms));
+  EXPECT_NE(kill(pid, 0), 0);
 }
 
 TEST_F(GuestProgramTest, ItHasNoDescriptorsOfTheRig) {

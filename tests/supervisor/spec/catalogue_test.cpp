@@ -159,7 +159,24 @@ TEST(BuiltCatalogue, ASecondCameraHasServicesOfItsOwn) {
   EXPECT_THAT(camera2.publishes, testing::ElementsAre("camera2.frames"));
   EXPECT_THAT(camera2.settings, testing::Contains("camera2.rate_hz"));
   EXPECT_THAT(catalogue.at("landmarks2").subscribes,
-              testing::ElementsAre("camera2.frames", "pose.hands"));
+              testing::ElementsAre("camera2.frames", "pose.hands", "guest.landmarks2"));
+}
+
+TEST(BuiltCatalogue, AProgramOfSomebodyIsAServiceIfItsBackEndListens) {
+  const auto guests = [](const config::Rig& rig) {
+    std::vector<std::vector<std::string>> commands;
+    for (const auto& spec : services_of(rig, test::built_catalogue()))
+      if (spec.instance_of == "guest") commands.push_back(command_of(spec, "/opt/bin"));
+    return commands;
+  };
+  config::Rig rig;
+  rig.pose.external.command = {"./mine"};
+  EXPECT_THAT(guests(rig), testing::IsEmpty()) << "pose.backend is \"twin\"";
+  rig.pose.second = "external";
+  EXPECT_THAT(guests(rig),
+              ElementsAre(ElementsAre("/opt/bin/handcast-guest", "--as", "pose_guest")));
+  rig.pose.external.command.clear();
+  EXPECT_THAT(guests(rig), testing::IsEmpty()) << "somebody starts it by hand";
 }
 
 TEST(BuiltCatalogue, AnInstanceIsStartedAsTheProgramOfTheFirst) {

@@ -77,9 +77,10 @@ void expect_reads(const std::string& service, const config::Rig& rig,
                   const std::vector<std::string>& names, const Paths& not_these = {}) {
   auto all = names;
   all.insert(all.end(), {"calibration"});
-  EXPECT_THAT(read_by(service, rig),
-              UnorderedElementsAreArray(without(settings_in(all), not_these)))
-      << service;
+  std::vector<std::string> of_guests;
+  for (const auto& guest : config::kGuests) of_guests.push_back(guest.section());
+  const auto wanted = without(without(settings_in(all), not_these), settings_in(of_guests));
+  EXPECT_THAT(read_by(service, rig), UnorderedElementsAreArray(wanted)) << service;
 }
 
 const std::vector<std::string> kTruth{"twin.motion", "twin.hands",    "twin.speed", "twin.seed",
@@ -239,6 +240,15 @@ TEST(Fingerprint, TheServicesOfTheSecondViewDependOnItsSectionsAndNotOnTheFirsts
                {"pose", "hand", "camera.backend", "camera2.backend"},
                settings_in({"pose.none", "pose.replay", "pose.leapc", "pose.openxr",
                             "pose.process.standby"}));
+}
+
+TEST(Fingerprint, AProgramOfSomebodyDependsOnItsSectionAndOnTheProcessThatItIsPartOf) {
+  for (const auto& guest : config::kGuests) {
+    auto expected =
+        settings_in({guest.section(), std::string(guest.feeds) + ".process", "calibration"});
+    expected.erase(std::string(guest.feeds) + ".process.standby");
+    EXPECT_THAT(read_by(std::string(guest.service), {}), UnorderedElementsAreArray(expected));
+  }
 }
 
 TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {

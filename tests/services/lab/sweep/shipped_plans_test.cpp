@@ -249,14 +249,22 @@ TEST(ShippedPlans, NoDeviceOfHardwareIsFasterThanItsRatePermits) {
   EXPECT_EQ(pairs.size(), 20u);
 }
 
+TEST(ShippedPlans, TheBenchmarksOwnMotionsAreUnseenOnes) {
+  const auto unseen = values_in("unseen", "motion");
+  for (const auto* plan : {"benchmark", "benchmark_stress"})
+    for (const auto& motion : values_in(plan, "motion"))
+      EXPECT_TRUE(unseen.contains(motion) || !motion.starts_with("builtin:")) << motion;
+}
+
 TEST(ShippedPlans, TheUnseenMotionsAreInNoOtherPlan) {
   const auto unseen = values_in("unseen", "motion");
   EXPECT_EQ(unseen.size(), 5u);
   EXPECT_EQ(values_in("unseen", "mesh"), (std::set<std::string>{"implicit", "webxr"}));
   for (const auto& file : std::filesystem::directory_iterator(source_root() / "config/sweeps")) {
     const auto name = file.path().stem().string();
-    // Nothing is chosen on hardware.toml and hardware_parts.toml either.
-    if (file.path().extension() != ".toml" || name == "unseen" || name.starts_with("hardware"))
+    // Nothing is chosen on the benchmark, hardware.toml and hardware_parts.toml either.
+    if (file.path().extension() != ".toml" || name == "unseen" || name.starts_with("hardware") ||
+        name.starts_with("benchmark"))
       continue;
     for (const auto& motion : values_in(name, "motion"))
       EXPECT_FALSE(unseen.contains(motion)) << name << ": " << motion;
