@@ -29,6 +29,15 @@ while True:
     time.sleep(0.01)
 )";
 
+/// What makes it leave its ring late.
+constexpr const char* kLeavesLate = R"(
+import signal, sys, time
+def leave(*_):
+    time.sleep(0.8)
+    sys.exit()
+signal.signal(signal.SIGTERM, leave)
+)";
+
 class Guest : public SystemTest {
  protected:
   void SetUp() override {
@@ -124,7 +133,7 @@ TEST_F(Guest, OneThatFallsSilentIsStartedAgain) {
 }
 
 TEST_F(Guest, AReloadStartsTheNextOneWhenTheLastOneHasLeft) {
-  std::ofstream(scratch_.path() / "my_tracker.py") << kTracker;
+  std::ofstream(scratch_.path() / "my_tracker.py") << kLeavesLate << kTracker;
   const auto rig_file = scratch_.path() / "rig.toml";
   const auto write = [&](const char* silent_s) {
     std::ofstream(rig_file) << "name = 'twin'\ncamera.rate_hz = 60\nprojector.rate_hz = 60\n"
