@@ -80,12 +80,14 @@ class TheTable(Test):
     def test_compares_case_by_case(self):
         file = write_sweep(self.folder, "benchmark", "twin.motion,twin.seed,interior_mm_mean,interior_mm_p95",
                            ["paper_at_our_speed,builtin:wave,101,4,9,", "paper_at_our_speed,/data/all_5s,101,10,20,",
+                            "paper_at_our_speed,builtin:coin,101,6,9,", "mine,builtin:coin,101,3,5,",
                             "mine,builtin:wave,101,2,5,", "mine,/data/all_5s,101,15,20,"])
         paper, mine = rows_of(read_results([file]))
         self.assertEqual((paper["ratio"], paper["worse"]), (1, 0))
-        self.assertEqual((mine["ratio"], mine["worse"], mine["compared"]), (1, 1, 2), "(2/4 + 15/10) / 2")
-        self.assertEqual(mine["of_cases"], {"wave, 101": 2, "all_5s, 101": 15})
-        self.assertIn("| mine | 8.5 / 12.5 | 1.00 | 1 of 2 |", list(markdown([paper, mine])))
+        self.assertEqual((mine["worse"], mine["compared"]), (1, 3))
+        self.assertAlmostEqual(mine["ratio"], (2 / 4 + 15 / 10 + 3 / 6) / 3)
+        self.assertEqual(mine["of_cases"], {"wave, 101": 2, "all_5s, 101": 15, "coin, 101": 3})
+        self.assertIn("| mine | 6.7 / 10.0 | 0.83 | 1 of 3 |", list(markdown([paper, mine])))
 
 
 class TheProgram(Test):

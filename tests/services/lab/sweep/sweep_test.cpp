@@ -48,26 +48,35 @@ class SweepTest : public testing::Test {
   test::Scratch scratch_;
 };
 
+/// A variant with the results in a folder.
+std::string row_of(const std::string& name, const std::filesystem::path& folder) {
+  return fmt::format("[[variant]]\nname = \"{}\"\nlandmarks = \"{}\"\n", name, folder.string());
+}
+
 TEST_F(SweepTest, TheResultsOfAMethodAreScoredInTheirCases) {
   const std::string cases =
       "joints_only = true\nseconds = 0.2\nwarm_up_s = 0.05\n[settings]\n"
       "landmarks.backend = \"twin\"\n[grid]\ntwin.seed = [1, 2]\n";
-  const std::string mine =
-      cases + "[[variant]]\nname = \"own\"\n[[variant]]\nname = \"mine\"\nlandmarks = \"" +
-      file("mine").string() + "\"\n";
+  const auto plan = cases + "[[variant]]\nname = \"own\"\n" +
+                    row_of("landmarks", file("landmarks")) + row_of("true", file("true_landmarks"));
   EXPECT_EQ(sweep(cases, "recorded.csv", 1, {}, false, file("cases")).scored, 2u);
-  std::filesystem::create_directory(file("mine"));
-  for (const auto* number : {"000", "001"})
-    std::filesystem::copy(file("cases") / number / "landmarks.csv",
-                          file("mine") / (std::string(number) + ".csv"));
-  EXPECT_EQ(sweep(mine, "mine.csv").scored, 4u);
-  const auto table = read_table(file("mine.csv"));
+  for (const std::string table : {"landmarks", "true_landmarks"}) {
+    std::filesystem::create_directory(file(table));
+    for (const std::string number : {"000", "001"})
+      std::filesystem::copy(file("cases") / number / (table + ".csv"),
+                            file(table) / (number + ".csv"));
+  }
+  ASSERT_EQ(sweep(plan, "scored.csv").scored, 6u);
+  const auto table = read_table(file("scored.csv"));
   const auto column = std::ranges::find(table->heading.columns, "landmark_mm_mean") -
                       table->heading.columns.begin();
-  for (const std::size_t number : {0u, 1u})
-    EXPECT_EQ(table->rows[number][column], table->rows[number + 2][column]) << number;
-  std::filesystem::remove(file("mine/001.csv"));
-  EXPECT_EQ(sweep(mine, "part.csv").absent, 1u);
+  const auto error_mm = [&](std::size_t run) { return std::stod(table->rows[run][column]); };
+  for (const std::size_t seed : {0u, 1u}) {
+    EXPECT_EQ(error_mm(seed), error_mm(2 + seed)) << "what its own detector has found";
+    EXPECT_LT(error_mm(4 + seed), error_mm(seed)) << "the truth";
+  }
+  std::filesystem::remove(file("true_landmarks/001.csv"));
+  EXPECT_EQ(sweep(plan, "part.csv").absent, 1u);
 }
 
 TEST_F(SweepTest, TheNumberOfThreadsDoesNotChangeTheFile) {
