@@ -20,7 +20,8 @@ install(DIRECTORY config/rigs DESTINATION ${CMAKE_INSTALL_DOCDIR}/config)
 foreach(file
     config/REFERENCE.md config/assets/leap/bring_up.txt config/assets/desk.png config/assets/looks.png config/assets/preview.png config/assets/readme.png config/assets/readme_looks.png config/assets/template.png ipc/ring/README.md
     renderer/README.md scripts/read_recording.py services/lab/training/MODEL_CARD.md
-    tests/client/CMakeLists.txt tests/client/draw_ring.c tests/client/detect_hands.py tests/client/draw_waves.py tests/client/hands_to_json.py tests/client/json_to_hands.py tests/client/read_projections.cpp)
+    tests/client/CMakeLists.txt tests/client/draw_ring.c tests/client/detect_hands.py tests/client/draw_waves.py tests/client/hands_to_json.py
+    tests/client/hands_to_osc.py tests/client/json_to_hands.py tests/client/paint_at_random.py tests/client/plot_error.py tests/client/read_projections.cpp)
   cmake_path(GET file PARENT_PATH folder)
   install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder})
 endforeach()

@@ -307,8 +307,8 @@ class AProgramOfSomebodyElse(unittest.TestCase):
             inbox.settimeout(PATIENCE_S)
             inbox.bind(("127.0.0.1", 0))
             self.start_python("hands_to_osc.py", "127.0.0.1", inbox.getsockname()[1])
-            address, types, *place_m = struct.unpack(">20s4s3f", inbox.recv(1000))
-        self.assertEqual((address.rstrip(b"\0"), types), (b"/hand/left/thumb", b",fff"))
+            address, types, *place_m = struct.unpack(">20s8s3f", inbox.recv(1000))
+        self.assertEqual((address.rstrip(b"\0"), types.rstrip(b"\0")), (b"/hand/left/thumb", b",fff"))
         self.assertTrue(0.01 < sum(each * each for each in place_m) ** 0.5 < 2, place_m)
 
     @unittest.skipUnless(has_modules("numpy"), "numpy is not installed")
