@@ -77,6 +77,7 @@ static service::Instance instance_of(const config::Guest& guest) {
 
 int main(int argc, char** argv) {
   std::vector<service::Instance> instances;
+  instances.reserve(config::kGuests.size());
   for (const auto& guest : config::kGuests) instances.push_back(instance_of(guest));
   return service::run(instances, argc, argv, "guest");
 }

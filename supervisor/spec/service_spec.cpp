@@ -40,21 +40,17 @@ ipc::RingSpec guest_ring(const char* stream) {
                                               msg::GuestPicture::bytes(kLargest_px, kLargest_px));
 }
 
-ipc::RingSpec guest_images(std::string_view stream) {
+ipc::RingSpec images(std::string_view stream, int slots) {
   return ipc::RingSpec::of<msg::CameraFrame>(
-      std::string(stream), kPictureSlots, kNewestOnly,
+      std::string(stream), slots, kNewestOnly,
       msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px));
 }
 
 std::vector<ipc::RingSpec> all_streams() {
   using ipc::RingSpec;
   return {
-      RingSpec::of<msg::CameraFrame>(
-          "camera.frames", kImageSlots, kNewestOnly,
-          msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
-      RingSpec::of<msg::CameraFrame>(
-          "camera2.frames", kImageSlots, kNewestOnly,
-          msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px)),
+      images("camera.frames", kImageSlots),
+      images("camera2.frames", kImageSlots),
       RingSpec::of<msg::HandPoses>("pose.hands", 64, kWithHistory),
       RingSpec::of<msg::Landmarks>("landmarks.hands", 32, kWithHistory),
       RingSpec::of<msg::Landmarks>("landmarks2.hands", 32, kWithHistory),
@@ -67,8 +63,8 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::LiveSettings>(std::string(msg::kLiveSettings), 8, kNewestOnly),
       guest_ring("guest.left"),
       guest_ring("guest.right"),
-      guest_images(msg::kGuestImages),
-      guest_images(msg::kSecondGuestImages),
+      images(msg::kGuestImages, kPictureSlots),
+      images(msg::kSecondGuestImages, kPictureSlots),
       RingSpec::of<msg::HandPoses>(std::string(msg::kGuestPoses), kGuestHistory, kWithHistory),
       RingSpec::of<msg::Landmarks>(std::string(msg::kGuestLandmarks), kGuestHistory, kWithHistory),
       RingSpec::of<msg::Landmarks>(std::string(msg::kSecondGuestLandmarks), kGuestHistory,
