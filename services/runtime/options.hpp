@@ -19,8 +19,8 @@ struct Options {
   std::optional<std::string> answer;   ///< printed in place of all that
 };
 
-/// Parses the command line of the program that can be these instances. `program`: its name, if it is
-/// not that of the first instance. Errors: bad_config, with a sentence that names the argument.
+/// Parses the command line of the program that can be these instances. `program`: its name, if it
+/// is not that of the first instance. Errors: bad_config, with a sentence that names the argument.
 Result<Options> parse_options(std::span<const Instance> instances, int argc,
                               const char* const* argv, std::string_view program = {});
 
