@@ -51,7 +51,8 @@ int become_program(const std::string& verb, const Arguments& arguments) {
   if (find_verb(verb))
     return complain(
         kExitConfig,
-        fmt::format("the program of this verb, {}, is missing; `scripts/build` builds all",
+        fmt::format("the program of this verb, {}, is missing; `scripts/build` builds all, and the "
+                    "packages handcast-tools and handcast-lab have what handcast has not",
                     program));
   std::vector<std::string_view> names;
   for (const auto& each : verbs()) names.push_back(each.name);

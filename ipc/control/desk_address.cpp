@@ -44,9 +44,10 @@ bool is_token(const std::string& text) {
          text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// Where the folder may be, best first. A service and a person's shell may know different ones.
-std::vector<fs::path> folders() {
-  std::vector<fs::path> all;
+/// Where the folder may be, best first. A service and a person's shell may know different ones. The
+/// first one is that of the unit of a rig, to which all others are read-only.
+std::vector<fs::path> folders(std::string_view rig) {
+  std::vector<fs::path> all{fs::path("/run/handcast") / rig};
   if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime == '/')
     all.push_back(fs::path(runtime) / "handcast");
   all.push_back(fmt::format("/run/user/{}/handcast", ::getuid()));
@@ -62,15 +63,15 @@ bool is_private(const fs::path& folder) {
 }
 
 /// The first folder that is there or can be made.
-Result<fs::path> make_folder() {
-  for (const auto& folder : folders()) {
+Result<fs::path> make_folder(std::string_view rig) {
+  for (const auto& folder : folders(rig)) {
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) continue;
     if (is_private(folder)) return folder;
   }
   return fail(Errc::unavailable,
               fmt::format("there is no folder for the address of the desk: {} cannot be made, or "
                           "is not a folder of this user alone",
-                          folders().back().string()));
+                          folders(rig).back().string()));
 }
 
 std::string name_of(std::string_view rig) {
@@ -110,14 +111,14 @@ Result<fs::path> desk_file(std::string_view rig) {
                 fmt::format("'{}' is not a valid name of a rig; {}", rig, kRigNameRule));
   const auto name = name_of(rig);
   std::optional<std::pair<fs::file_time_type, fs::path>> newest;
-  for (const auto& folder : folders()) {
+  for (const auto& folder : folders(rig)) {
     std::error_code absent;
     const auto written = fs::last_write_time(folder / name, absent);
     if (absent || !is_private(folder)) continue;
     if (!newest || written > newest->first) newest.emplace(written, folder / name);
   }
   if (newest) return newest->second;
-  return make_folder().map([&](const fs::path& folder) { return folder / name; });
+  return make_folder(rig).map([&](const fs::path& folder) { return folder / name; });
 }
 
 Result<DeskAddress> read_desk_file(const fs::path& file) {

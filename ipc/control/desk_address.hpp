@@ -48,10 +48,11 @@ struct DeskAddress {
 /// Fresh tokens from the kernel's random numbers.
 std::array<std::string, kRoles> new_tokens();
 
-/// The file of a rig: where it is, or, if there is none, where it would be. It is in handcast/ in
-/// the user's folder for what lives as long as the computer is up ($XDG_RUNTIME_DIR, /run/user/ID),
-/// or in /tmp/handcast-ID/. Errors: bad_config (not a name of a rig), unavailable (such a folder
-/// cannot be made, or others may write to it).
+/// The file of a rig: where it is, or, if there is none, where it would be. It is in the runtime
+/// folder of the rig's unit (/run/handcast/RIG), in handcast/ in the user's folder for what lives
+/// as long as the computer is up ($XDG_RUNTIME_DIR, /run/user/ID), or in /tmp/handcast-ID/. Errors:
+/// bad_config (not a name of a rig), unavailable (such a folder cannot be made, or others may write
+/// to it).
 Result<std::filesystem::path> desk_file(std::string_view rig);
 /// Errors: unavailable (there is none), bad_data (it is damaged).
 Result<DeskAddress> read_desk_file(const std::filesystem::path& file);

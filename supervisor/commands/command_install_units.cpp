@@ -90,6 +90,11 @@ void take_display(UnitSpec& spec) {
       authority && *authority ? authority : std::string(user ? user->pw_dir : "") + "/.Xauthority";
 }
 
+int print_template(const std::string& program) {
+  fmt::print("{}", unit_text(template_spec(program)));
+  return kExitDone;
+}
+
 bool wants_real_time(const config::Rig& rig) {
   const auto wants = [&](const char* service) {
     return config::process_of(rig, service).priority > 0;
@@ -103,7 +108,8 @@ int run_install_units(const Arguments& arguments) {
   auto line = command_line_of("install-units");
   UnitSpec spec{.program = program_folder() / "handcast", .groups = device_groups()};
   bool only_print = false;
-  line.add("RIG.toml", spec.rig_file, "The rig file");
+  std::string template_of;
+  line.add("[RIG.toml]", spec.rig_file, "The rig file");
   line.add("--set path=value", spec.settings, "As for `handcast up`");
   line.add("--out DIR", spec.out,
            "As for `handcast up`; default: a folder of the unit, /var/lib/handcast/NAME with "
@@ -111,7 +117,11 @@ int run_install_units(const Arguments& arguments) {
   line.add("--system", spec.system, "A unit of the machine instead of one of this user");
   line.add("--user NAME", spec.user, "The user as which it runs; default: the one who calls sudo");
   line.add("--print", only_print, "Prints the unit and writes nothing");
+  line.add("--print-template PROGRAM", template_of,
+           "Prints handcast@.service, the unit of Debian's package, for this program, and ends");
   if (const auto code = line.answered(arguments)) return *code;
+  if (!template_of.empty()) return print_template(template_of);
+  if (spec.rig_file.empty()) return line.refuse("RIG.toml is missing");
   spec.rig_file = std::filesystem::absolute(spec.rig_file);
   const auto rig = config::load_rig(spec.rig_file, spec.settings);
   if (!rig) return complain(rig.error());

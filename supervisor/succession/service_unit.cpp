@@ -6,9 +6,11 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdlib>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "ipc/base/join.hpp"
 #include "supervisor/succession/units/template.hpp"
@@ -17,7 +19,11 @@ namespace handcast::supervisor {
 namespace {
 
 constexpr std::string_view kForSystem = "#system#", kForUser = "#user#", kForWindow = "#window#",
-                           kForRealTime = "#real-time#";
+                           kForRealTime = "#real-time#", kForTemplate = "#template#";
+constexpr const char* kPackagedRigs = "/etc/handcast";  ///< as in scripts/package.d/tmpfiles.conf
+
+/// The groups that own the devices of rigs.
+constexpr std::array kDeviceGroups{"video", "render", "input", "plugdev"};
 
 /// Quotes one word of a command line. systemd expands %x and $X, and reads quotes and backslashes
 /// as a shell does.
@@ -31,7 +37,17 @@ std::string word(const std::string& text) {
   return quoted + '"';
 }
 
+/// The command of all instances. `name`: ExecStop names the rig by its file, whatever is in it.
+/// /etc is not for recordings, which are large.
+std::string command_of_template(const UnitSpec& spec) {
+  return fmt::format(
+      "{} up --no-keeper \"{}/%i.toml\" --out \"%L/handcast/%i\" --set \"name=%i\" --set "
+      "\"desk.page.recordings=%S/handcast/%i/recordings\"",
+      word(spec.program), kPackagedRigs);
+}
+
 std::string command_of(const UnitSpec& spec) {
+  if (spec.is_template) return command_of_template(spec);
   const auto out = spec.out.empty() ? fmt::format("\"%S/handcast/{}\"", spec.rig) : word(spec.out);
   auto command =
       fmt::format("{} up --no-keeper {} --out {}", word(spec.program), word(spec.rig_file), out);
@@ -66,8 +82,9 @@ std::string plain(const std::string& text) {
 }
 
 /// A system unit may write only to the folders that it names. '-': if the folder is missing,
-/// `handcast up` says so better than systemd.
-std::string writable_out(const UnitSpec& spec) {
+/// `handcast up` says so better than systemd. Settings are saved beside the rig file.
+std::string writable_folder(const UnitSpec& spec) {
+  if (spec.is_template) return fmt::format("ReadWritePaths=\"-{}\"", kPackagedRigs);
   if (spec.out.empty() || !spec.system) return {};
   return fmt::format("ReadWritePaths=\"-{}\"", plain(spec.out.string()));
 }
@@ -82,19 +99,34 @@ std::string home() {
 
 std::vector<std::string> device_groups() {
   std::vector<std::string> groups;
-  for (const char* name : {"video", "render", "input", "plugdev"})
+  for (const char* name : kDeviceGroups)
     if (getgrnam(name) != nullptr) groups.emplace_back(name);
   return groups;
 }
 
-std::string unit_name(const UnitSpec& spec) { return fmt::format("handcast-{}.service", spec.rig); }
+UnitSpec template_spec(std::filesystem::path program) {
+  return {.rig = "%i",
+          .program = std::move(program),
+          .rig_file = {},
+          .settings = {},
+          .out = {},
+          .system = true,
+          .is_template = true,
+          .user = "handcast",
+          .groups = {kDeviceGroups.begin(), kDeviceGroups.end()},
+          .real_time = true};
+}
+
+std::string unit_name(const UnitSpec& spec) {
+  return spec.is_template ? "handcast@.service" : fmt::format("handcast-{}.service", spec.rig);
+}
 
 std::string unit_text(const UnitSpec& spec) {
   const std::map<std::string, std::string> values{
       {"@NAME@", spec.rig},
       {"@PROGRAM@", word(spec.program)},
       {"@COMMAND@", command_of(spec)},
-      {"@WRITABLE_OUT@", writable_out(spec)},
+      {"@WRITABLE@", writable_folder(spec)},
       {"@GROUPS@", join(spec.groups, " ")},
       {"@USER@", spec.user},
       {"@CAPABILITIES@", spec.real_time ? "CAP_SYS_NICE" : ""},
@@ -109,6 +141,7 @@ std::string unit_text(const UnitSpec& spec) {
     if (take_mark(line, kForSystem) && !spec.system) continue;
     if (take_mark(line, kForUser) && spec.system) continue;
     if (take_mark(line, kForRealTime) && !spec.real_time) continue;
+    if (take_mark(line, kForTemplate) && !spec.is_template) continue;
     text += replaced(line, values) + "\n";
   }
   return text;

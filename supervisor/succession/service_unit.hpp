@@ -14,7 +14,9 @@ struct UnitSpec {
   std::vector<std::string> settings;  ///< --set path=value
   /// Absolute path of the folder for kept files; empty: the unit's own state folder.
   std::filesystem::path out;
-  bool system = false;              ///< a unit of the system; false: of the user's session
+  bool system = false;  ///< a unit of the system; false: of the user's session
+  /// handcast@.service: each instance runs the rig of its name; see template_spec().
+  bool is_template = false;
   std::string user;                 ///< the user of a system unit
   std::vector<std::string> groups;  ///< further groups of a system unit
   bool real_time = false;           ///< a service wants a real-time priority
@@ -29,7 +31,11 @@ struct UnitSpec {
 /// machine has.
 std::vector<std::string> device_groups();
 
-/// The name of the unit: "handcast-desk.service".
+/// The unit of Debian's package, which runs the rig /etc/handcast/RIG.toml as the package's user.
+/// It depends on nothing of this machine.
+UnitSpec template_spec(std::filesystem::path program);
+
+/// The name of the unit: "handcast-desk.service", or "handcast@.service".
 std::string unit_name(const UnitSpec& spec);
 /// The text of the unit file, made from units/handcast.service.in.
 std::string unit_text(const UnitSpec& spec);

@@ -44,6 +44,13 @@ std::string controller_of(const Plan& plan) {
   return text;
 }
 
+/// The unit of Debian's package runs the rig files of one folder.
+std::string start_command(const std::string& file) {
+  const auto whole = std::filesystem::absolute(file);
+  if (whole.parent_path() != "/etc/handcast") return fmt::format("handcast up {}", file);
+  return fmt::format("sudo systemctl enable --now handcast@{}", whole.stem().string());
+}
+
 /// The sentences about what has to be done, in their order.
 std::vector<std::string> steps(const Plan& plan, const std::string& file) {
   std::vector<std::string> steps;
@@ -56,7 +63,7 @@ std::vector<std::string> steps(const Plan& plan, const std::string& file) {
         "Read \"A DLP projector with a controller\" in docs/operating/light.md before the "
         "first light.");
   steps.push_back(fmt::format("handcast doctor {}", file));
-  steps.push_back(fmt::format("handcast up {}", file));
+  steps.push_back(start_command(file));
   return steps;
 }
 

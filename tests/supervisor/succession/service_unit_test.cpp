@@ -139,6 +139,32 @@ TEST_P(EachUnit, IsAcceptedBySystemd) {
   }
 }
 
+TEST(ServiceUnit, OfThePackageRunsTheRigOfItsInstanceWhateverTheFileCallsIt) {
+  const auto spec = template_spec("/usr/bin/handcast");
+  EXPECT_EQ(unit_name(spec), "handcast@.service");
+  EXPECT_THAT(
+      unit_text(spec),
+      AllOf(HasSubstr("\nExecStart=\"/usr/bin/handcast\" up --no-keeper "
+                      "\"/etc/handcast/%i.toml\" --out \"%L/handcast/%i\" --set \"name=%i\" "),
+            HasSubstr("\nExecStop=-\"/usr/bin/handcast\" down --rig %i\n"),
+            HasSubstr("\nUser=handcast\n"), Not(testing::ContainsRegex("@[A-Z_]+@")),
+            Not(HasSubstr("#template#"))));
+}
+
+TEST(ServiceUnit, OfThePackageIsTheSameOnEachMachineAndMayDoWhatDevicesNeed) {
+  EXPECT_THAT(unit_text(template_spec("/usr/bin/handcast")),
+              AllOf(HasSubstr("\nSupplementaryGroups=video render input plugdev\n"),
+                    HasSubstr("\nAmbientCapabilities=CAP_SYS_NICE\n"),
+                    HasSubstr("\nReadWritePaths=\"-/etc/handcast\"\n")));
+}
+
+TEST(ServiceUnit, OfTheMachineHasAFolderForTheAddressOfTheDesk) {
+  EXPECT_THAT(unit_text(unit_of_desk(true)),
+              AllOf(HasSubstr("\nRuntimeDirectory=handcast/desk\nRuntimeDirectoryMode=0700\n"),
+                    HasSubstr("\nRuntimeDirectoryPreserve=restart\n")));
+  EXPECT_THAT(unit_text(unit_of_desk(false)), Not(HasSubstr("RuntimeDirectory")));
+}
+
 TEST(ServiceUnit, OfTheMachineIsAtMostThreeOfTenExposed) {
   if (!can_analyze()) GTEST_SKIP() << "systemd-analyze is not installed";
   EXPECT_THAT(analyzed("security --offline=true --threshold=30 --no-pager", unit_of_desk(true)),
