@@ -13,7 +13,9 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O3")
 
+set(CMAKE_INSTALL_LIBDIR lib/${CMAKE_LIBRARY_ARCHITECTURE})
 include(GNUInstallDirs)
+include(components)
 # Programs look for their files here as seen from their own folder, in the build and in an
 # installation.
 cmake_path(SET HANDCAST_INSTALL_SHAREDIR NORMALIZE "${CMAKE_INSTALL_BINDIR}/../share/handcast")
@@ -154,7 +156,8 @@ function(handcast_program name)
   handcast_use(${name} PRIVATE ${ARG_USES})
   handcast_precompile(${name})
   if(NOT ARG_NOT_INSTALLED)
-    install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+    file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+    handcast_install_program(TARGETS ${name} ${folder})
   endif()
 endfunction()
 

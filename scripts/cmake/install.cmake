@@ -5,11 +5,12 @@
 include(CMakePackageConfigHelpers)
 
 set(share ${HANDCAST_INSTALL_SHAREDIR})
-install(DIRECTORY config/rigs config/calibrations config/sweeps DESTINATION ${share})
-install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts)
-install(FILES scripts/lib.sh DESTINATION ${share}/scripts)
+install(DIRECTORY config/rigs config/calibrations DESTINATION ${share})
+install(DIRECTORY config/sweeps DESTINATION ${share} COMPONENT lab)
+install(PROGRAMS scripts/get-models DESTINATION ${share}/scripts COMPONENT tools)
+install(FILES scripts/lib.sh DESTINATION ${share}/scripts COMPONENT tools)
+# For the programs that a rig starts, also a rig of the build folder.
 install(FILES scripts/handcast.py DESTINATION ${share}/python)
-# For the programs that a rig of the build folder starts.
 configure_file(scripts/handcast.py ${CMAKE_BINARY_DIR}/share/handcast/python/handcast.py COPYONLY)
 
 # The documents, in the folders that their links lead to.
@@ -39,27 +40,28 @@ target_link_libraries(handcast_client PUBLIC fmt::fmt tl::expected Threads::Thre
 target_include_directories(handcast_client INTERFACE
   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/handcast>)
 
-install(TARGETS handcast_client EXPORT handcastTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS handcast_client EXPORT handcastTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 foreach(module ipc/base ipc/msg ipc/shm ipc/ring ipc/client)
-  install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/ipc
+  install(DIRECTORY ${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/ipc COMPONENT dev
     FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE PATTERN c_calls.hpp EXCLUDE)
 endforeach()
 
 # The library for programs that draw, in any language.
-install(TARGETS handcast_c EXPORT handcastTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+install(TARGETS handcast_c EXPORT handcastTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT dev
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES ipc/client/handcast.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(FILES ipc/client/handcast.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 
 # find_package(handcast)
 set(made ${CMAKE_BINARY_DIR}/package)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/handcast)
-install(EXPORT handcastTargets NAMESPACE handcast:: DESTINATION ${package})
+install(EXPORT handcastTargets NAMESPACE handcast:: DESTINATION ${package} COMPONENT dev)
 configure_package_config_file(scripts/cmake/handcastConfig.cmake.in ${made}/handcastConfig.cmake
   INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${made}/handcastConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${made}/handcastConfig.cmake ${made}/handcastConfigVersion.cmake
-  DESTINATION ${package})
+  DESTINATION ${package} COMPONENT dev)
 
 # pkg-config handcast, handcast-c
 set(pkgconfig ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
@@ -67,5 +69,5 @@ file(RELATIVE_PATH prefix_from_pc /${pkgconfig} /)
 string(REGEX REPLACE "/$" "" prefix_from_pc ${prefix_from_pc})
 foreach(name handcast handcast-c)
   configure_file(scripts/cmake/${name}.pc.in ${made}/${name}.pc @ONLY)
-  install(FILES ${made}/${name}.pc DESTINATION ${pkgconfig})
+  install(FILES ${made}/${name}.pc DESTINATION ${pkgconfig} COMPONENT dev)
 endforeach()

@@ -81,6 +81,12 @@ def rig_file():
     return tree / "share/handcast/rigs/twin.toml"
 
 
+def libraries():
+    """lib/x86_64-linux-gnu or the like."""
+    library, = (tree / "lib").glob("*/libhandcast.so.0")
+    return library.parent
+
+
 def moment_ms():
     return time.clock_gettime(time.CLOCK_MONOTONIC) * 1e3
 
@@ -131,6 +137,11 @@ class TheInstalledTree(unittest.TestCase):
         handcast("chart", results, "--out", scratch / "charts")
         self.assertTrue((scratch / "charts/charts.html").is_file())
 
+    def test_lets_studies_find_the_library_that_they_draw_with(self):
+        if not (tree / "bin/handcast-study").exists():
+            self.skipTest("handcast-study has not been built")
+        self.assertIn("jnd", handcast("study", "--help"))
+
     def test_lets_systemd_run_the_programs_where_they_are_now(self):
         unit = handcast("install-units", rig_file(), "--print")
         command = f'"{tree}/bin/handcast" up --no-keeper "{rig_file()}" --out "%S/handcast/twin"'
@@ -154,7 +165,7 @@ class TheInstalledTree(unittest.TestCase):
             self.assertIn(f"\nUser={pwd.getpwuid(os.getuid()).pw_name}\n", done.stdout)
 
     def test_has_a_library_that_exports_its_own_functions_alone(self):
-        said = run("nm", "-D", "--defined-only", "--format=posix", tree / "lib/libhandcast.so.0")
+        said = run("nm", "-D", "--defined-only", "--format=posix", libraries() / "libhandcast.so.0")
         names = {line.split()[0].split("@")[0] for line in said.splitlines()} - {"HANDCAST_0"}
         header = (tree / "include/handcast.h").read_text(encoding="utf-8")
         self.assertEqual(names, set(re.findall(r"(handcast_\w+)\(", header)))
@@ -169,7 +180,7 @@ class TheInstalledTree(unittest.TestCase):
 
 
 def flags(*options, package="handcast"):
-    said = run("pkg-config", *options, package, PKG_CONFIG_PATH=str(tree / "lib/pkgconfig"))
+    said = run("pkg-config", *options, package, PKG_CONFIG_PATH=str(libraries() / "pkgconfig"))
     return shlex.split(said)
 
 
@@ -212,7 +223,7 @@ class AProgramOfSomebodyElse(unittest.TestCase):
 
     def start_python(self, name, *arguments, **more):
         """With the Python that has numpy, if there is one."""
-        return self.start(PYTHON, SOURCE / name, *arguments, **more, LD_LIBRARY_PATH=str(tree / "lib"),
+        return self.start(PYTHON, SOURCE / name, *arguments, **more, LD_LIBRARY_PATH=str(libraries()),
                           PYTHONPATH=str(tree / "share/handcast/python"))
 
     def start_rig(self, *settings, out=None):
@@ -241,7 +252,7 @@ class AProgramOfSomebodyElse(unittest.TestCase):
         self.assertEqual(said.wait(PATIENCE_S), 1)
 
     def start_drawing(self, program, *arguments):
-        return self.start(*program, *arguments, LD_LIBRARY_PATH=str(tree / "lib"),
+        return self.start(*program, *arguments, LD_LIBRARY_PATH=str(libraries()),
                           PYTHONPATH=str(tree / "share/handcast/python"))
 
     def test_that_draws_without_a_rig_is_told_how_to_start_one(self):
