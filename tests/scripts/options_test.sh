@@ -13,6 +13,6 @@ expect "'--seconds' '2'" --seconds=2
 expect "'--out' 'a b' 'x=y'" "--out=a b" x=y
 expect "'--a' 'b=c' '--' '--d=e'" --a=b=c -- --d=e
 expect ""
-for script in demo bench results get-models train-landmarks; do
+for script in demo bench package results get-models train-landmarks; do
   [[ $("scripts/$script" -h) == "scripts/$script"* ]] || { echo "scripts/$script -h: no help"; exit 1; }
 done
