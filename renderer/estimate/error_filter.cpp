@@ -220,7 +220,7 @@ void ErrorFilter::doubt_landmarks(const AbruptLandmarks& abrupt) {
     const double off = deviation(landmark);
     if (!(off > kHuber)) continue;
     const int at = 2 * landmark;
-    if (abrupt[landmark] != Abrupt::tracker) {
+    if (abrupt[landmark] == Abrupt::detector) {
       const auto seen = index(error::seen_of(landmark));
       const double more = residual_.segment<2>(at).squaredNorm();
       for (int axis = 0; axis < 2; ++axis) {

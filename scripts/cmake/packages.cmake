@@ -64,8 +64,12 @@ camera, tracker or detector."
 # Man pages, from what the programs print with --help.
 foreach(component show tools lab)
   get_property(programs GLOBAL PROPERTY handcast_programs_of_${component})
-  set(targets ${programs})
-  list(FILTER targets EXCLUDE REGEX "-(chart|report|calibration-page)$")  # which need no building
+  set(targets)
+  foreach(program ${programs})
+    if(TARGET ${program})  # pages need no building
+      list(APPEND targets ${program})
+    endif()
+  endforeach()
   add_custom_command(OUTPUT ${made}/man/${component}.stamp
     COMMAND ${Python3_EXECUTABLE} ${from}/man_pages.py ${CMAKE_RUNTIME_OUTPUT_DIRECTORY} ${made}/man/${component} ${programs}
     COMMAND ${CMAKE_COMMAND} -E touch ${made}/man/${component}.stamp

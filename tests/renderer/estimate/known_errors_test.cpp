@@ -22,6 +22,25 @@ class Known : public ::testing::Test {
     for (auto& at_m : sighting.reported.at_m) at_m.x += aside_m;
     return known_.add(calibration_.camera, sighting);
   }
+  /// Adds that the detector sees the index finger beside its place, and whether it has just moved
+  /// it.
+  void see_index_beside(float beside_px, bool is_abrupt) {
+    time_ns_ += 10'000'000;
+    Sighting sighting{time_ns_, in_camera(calibration_, pose_), seen_, {}};
+    for (int i = 5; i < 9; ++i) {
+      sighting.seen.points[i].x_px += beside_px;
+      if (is_abrupt) sighting.abrupt[i] = Abrupt::detector;
+    }
+    EXPECT_TRUE(known_.add(calibration_.camera, sighting));
+  }
+  /// How far the index finger is believed to be from where the tracker has it, m.
+  double index_moved_m() const {
+    const auto errors = known_.errors_at(time_ns_);
+    const auto reported = in_camera(calibration_, pose_);
+    const ArticulatedHand hand(reported, errors);
+    const auto tip = joint_of_landmark(8);
+    return glm::distance(hand.joints().at_m[tip], reported.at_m[tip]);
+  }
   double shift_m() const { return known_.errors_at(time_ns_)[error::kShift]; }
 
   /// A second and a half in which the tracker loses the hand, a millimetre at a time.
@@ -55,6 +74,14 @@ TEST_F(Known, WhatWasKnownBeforeALossHoldsAfterIt) {
   while (!add(0)) ++sightings;
   EXPECT_LE(sightings, 3);
   EXPECT_LT(std::abs(shift_m()), 0.02);
+}
+
+TEST_F(Known, AnErrorOfTheDetectorEndsAsAbruptlyAsItBegan) {
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));
+  for (int i = 0; i < 60; ++i) see_index_beside(45 + 0.5f * static_cast<float>(i), i == 0);
+  EXPECT_GT(index_moved_m(), 0.003) << "the part that came slowly is believed";
+  for (int i = 0; i < 20; ++i) see_index_beside(0, i == 0);
+  EXPECT_LT(index_moved_m(), 0.003);
 }
 
 TEST_F(Known, ATrackerThatWasMovedContradictsUntilItIsDoubted) {
