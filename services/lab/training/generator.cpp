@@ -31,12 +31,10 @@ void Generator::make_hand(Dice& dice) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
   const JointFrames joints = moved(draw_view(dice, pose.joints), pose.joints);
-  const Definitions definitions = draw_definitions(dice);
-  const JointFrames labelled = defined(joints, definitions);
-  const Points truth_px = project(camera_, labelled),
-               tracker_px = draw_tracker(dice, camera_, people_, person, pose, joints, definitions);
+  const Points truth_px = project(camera_, joints),
+               tracker_px = draw_tracker(dice, camera_, people_, person, pose, joints);
   sample_.has_hand = 1;
-  sample_.has_tracker = dice.chance(0.65f);
+  sample_.has_tracker = dice.chance(0.75f);
   const Region region = draw_region(dice, truth_px, sample_.has_tracker ? &tracker_px : nullptr);
   sample_.truth = handcast_network::to_places(region, msg::Side::right, truth_px);
   sample_.tracker = handcast_network::to_places(region, msg::Side::right, tracker_px);
@@ -48,7 +46,7 @@ void Generator::make_hand(Dice& dice) {
   scene_.draw(dice, light);
   for (int i = 0; i < msg::kLandmarks; ++i) {
     const int joint = msg::kJointOfLandmark[i];
-    sample_.visible[i] = scene_.sees(glm::vec3(labelled[joint][3]), person.radius_m[joint]);
+    sample_.visible[i] = scene_.sees(glm::vec3(joints[joint][3]), person.radius_m[joint]);
   }
 }
 

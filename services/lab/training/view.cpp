@@ -68,15 +68,10 @@ JointFrames moved(const glm::mat4& m, const JointFrames& joints) {
   return result;
 }
 
-/// Back or palm face the camera, or the hand's edge does, where most is hidden.
 glm::mat4 draw_view(Dice& dice, const JointFrames& joints) {
   const float kind = dice.uniform();
   float spin = dice.between(-kPi, kPi);
-  const float side = dice.chance(0.5f) ? 1.f : -1.f;
-  if (kind < 0.3f)
-    spin = (side > 0 ? kPi : 0) + dice.normal(0.45f);
-  else if (kind < 0.7f)
-    spin = side * 0.5f * kPi + dice.normal(0.35f);
+  if (kind < 0.55f) spin = (dice.chance(0.5f) ? kPi : 0) + dice.normal(0.45f);
   glm::mat4 turned = turn(spin, {0, 1, 0}) * upright();
   if (kind > 0.94f)
     turned = turn(dice.between(-kPi, kPi), draw_direction(dice)) * turned;
@@ -102,8 +97,7 @@ Points project(const calib::CameraModel& camera, const JointFrames& in_camera) {
 }
 
 Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vector<Person>& people,
-                    const Person& person, const Pose& pose, const JointFrames& in_camera,
-                    const Definitions& definitions) {
+                    const Person& person, const Pose& pose, const JointFrames& in_camera) {
   const Person& model =
       dice.chance(0.75f)
           ? person
@@ -119,8 +113,7 @@ Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vec
   camera_from_wrist[3] = {0, 0, 0, 1};
   camera_from_wrist = wrong * camera_from_wrist;
   camera_from_wrist[3] = wrist;
-  Points points_px = project(
-      camera, defined(moved(camera_from_wrist, pose_of(model, posture).joints), definitions));
+  Points points_px = project(camera, moved(camera_from_wrist, pose_of(model, posture).joints));
   misplace(dice, points_px, std::max(60.0f, palm_length_px(project(camera, in_camera))));
   if (dice.chance(0.02f))
     for (int k = 5; k < 9; ++k)
