@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Debian's packages hold what a technician needs, and a computer installs, runs, upgrades and removes them.
 
-usage: packages_test.py
+usage: packages_test.py [CLASS ...]
 
 Packs the finished build, twice. The computer is a container of systemd-nspawn, whose root is that of this machine under a layer of its
 own; it needs the superuser's rights.
