@@ -44,7 +44,7 @@ bool KnownErrors::recall(const calib::CameraModel& camera, const Sighting& sight
 }
 
 void KnownErrors::remember() {
-  std::ranges::rotate(earlier_, earlier_.end() - 1);
+  std::rotate(earlier_.begin(), earlier_.end() - 1, earlier_.end());
   earlier_[0] = now_;
 }
 
