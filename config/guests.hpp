@@ -22,24 +22,27 @@ struct Guest {
   bool is_wanted(const Rig& rig) const { return is_heard(rig) && !settings(rig).command.empty(); }
 };
 
+/// The guest of the service with this section of a rig.
+template <auto kSection>
+constexpr Guest guest_of(std::string_view service, std::string_view feeds) {
+  return {service, feeds,
+          [](const Rig& rig) -> const External& { return (rig.*kSection).external; },
+          [](const Rig& rig) {
+            const auto& section = rig.*kSection;
+            bool is_heard = section.backend == "external";
+            if constexpr (requires { section.second; })
+              is_heard = is_heard || section.second == "external";
+            return is_heard;
+          }};
+}
+
 /// All that there can be.
 inline constexpr std::array kGuests{
-    Guest{"camera_guest", "camera",
-          [](const Rig& rig) -> const External& { return rig.camera.external; },
-          [](const Rig& rig) { return rig.camera.backend == "external"; }},
-    Guest{"camera2_guest", "camera2",
-          [](const Rig& rig) -> const External& { return rig.camera2.external; },
-          [](const Rig& rig) { return rig.camera2.backend == "external"; }},
-    Guest{"pose_guest", "pose", [](const Rig& rig) -> const External& { return rig.pose.external; },
-          [](const Rig& rig) {
-            return rig.pose.backend == "external" || rig.pose.second == "external";
-          }},
-    Guest{"landmarks_guest", "landmarks",
-          [](const Rig& rig) -> const External& { return rig.landmarks.external; },
-          [](const Rig& rig) { return rig.landmarks.backend == "external"; }},
-    Guest{"landmarks2_guest", "landmarks2",
-          [](const Rig& rig) -> const External& { return rig.landmarks2.external; },
-          [](const Rig& rig) { return rig.landmarks2.backend == "external"; }},
+    guest_of<&Rig::camera>("camera_guest", "camera"),
+    guest_of<&Rig::camera2>("camera2_guest", "camera2"),
+    guest_of<&Rig::pose>("pose_guest", "pose"),
+    guest_of<&Rig::landmarks>("landmarks_guest", "landmarks"),
+    guest_of<&Rig::landmarks2>("landmarks2_guest", "landmarks2"),
 };
 
 }  // namespace handcast::config

@@ -146,10 +146,10 @@ handcast_result handcast_wait_image(handcast_rig* rig, handcast_image* image, in
 handcast_result handcast_wait_hands(handcast_rig* rig, handcast_both_hands* hands, int timeout_ms);
 
 /** Sends a sample of a tracker, the landmarks of an image, or an image, which must have the size of
- *  the camera in the calibration; does not wait. The rig uses them if pose.backend,
- *  landmarks.backend, camera.backend or camera2.backend is "external". Times must increase, be at most 1 s old and
- *  at most 50 ms of the future. HANDCAST_BAD_DATA: it was not sent; the sentence says why.
- *  HANDCAST_UNAVAILABLE: another program sends. */
+ *  the camera in the calibration; does not wait. The rig uses them if the `backend` of its pose,
+ *  landmarks or camera (or of landmarks2, camera2) is "external". Times must increase, be at most
+ *  1 s old and at most 50 ms of the future. HANDCAST_BAD_DATA: it was not sent; the sentence says
+ *  why. HANDCAST_UNAVAILABLE: another program sends. */
 handcast_result handcast_send_hands(handcast_rig* rig, const handcast_both_hands* hands);
 handcast_result handcast_send_landmarks(handcast_rig* rig, const handcast_landmarks* landmarks);
 handcast_result handcast_send_image(handcast_rig* rig, const handcast_image* image);

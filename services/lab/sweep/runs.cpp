@@ -155,8 +155,8 @@ Result<Expansion> expand(const Plan& plan) {
       hash.add(without_machine(*rig, folder, contents));
       hash.add(unnamed_files(*rig, contents));
       const auto& variant = plan.variants[run.variant];
-      for (const auto& folder : {variant.poses, variant.landmarks})
-        if (!folder.empty()) hash.add(contents.of(results_file(folder, case_of(plan, run))));
+      for (const auto& results : {variant.poses, variant.landmarks})
+        if (!results.empty()) hash.add(contents.of(results_file(results, case_of(plan, run))));
     } else if (std::ranges::find(known, rig.error().what) == known.end()) {
       known.push_back(rig.error().what);
       faults.add(fmt::format("{}: run {} ({}): {}", plan.file.string(), run.index,
