@@ -32,6 +32,14 @@ bool touches(const Region& region, renderer::GreyView image) {
   return glm::distance(nearest, region.centre_px) < 0.71f * region.size_px;
 }
 
+/// True if wrist and middle knuckle of both are at one place: a hand and its mirrored reading, in
+/// which thumb and little finger are exchanged.
+bool have_one_palm(const Points& a, const Points& b) {
+  constexpr float kSamePalm = 0.3f;  // in palm lengths
+  const float most_px = kSamePalm * std::max(palm_length_px(a), palm_length_px(b));
+  return glm::distance(a[0], b[0]) < most_px && glm::distance(a[9], b[9]) < most_px;
+}
+
 float sum_of(const std::array<float, msg::kLandmarks>& sigma_px) {
   return std::accumulate(sigma_px.begin(), sigma_px.end(), 0.0f);
 }
@@ -161,20 +169,23 @@ float HandFinder::share_of_comparison(FoundHand& hand) {
 
 /// Two candidates may have the same hand as their result, for example while hands cross. Keeps the
 /// one that is nearer to its hint or, without hints, the one that has moved less since the last
-/// image or, if that is not known, has the larger presence.
+/// image or, if that is not known, of which the model is surer. Where the tracker has only one hand
+/// or none, a hand may have been read as a left and as a right one.
 void HandFinder::drop_duplicate(const Hints& hints_px) {
   if (found_.size() < 2) return;
-  if (!are_one_hand(found_[0].points_px, found_[1].points_px)) return;
+  const Points &a_px = found_[0].points_px, &b_px = found_[1].points_px;
   const auto& first = hints_px[index_of(found_[0].side)];
   const auto& second = hints_px[index_of(found_[1].side)];
-  bool keep_first = found_[0].presence >= found_[1].presence;
+  const bool both_are_known = is_usable(first) && is_usable(second);
+  if (!are_one_hand(a_px, b_px) && (both_are_known || !have_one_palm(a_px, b_px))) return;
+  bool keep_first =
+      sigma_of(found_[0]) < sigma_of(found_[1]) ||
+      (sigma_of(found_[0]) == sigma_of(found_[1]) && found_[0].presence >= found_[1].presence);
   if (found_[0].before_px && found_[1].before_px)
     keep_first = distance_px(*found_[0].before_px, found_[0].points_px) <=
                  distance_px(*found_[1].before_px, found_[1].points_px);
   if (is_usable(first) != is_usable(second)) keep_first = is_usable(first);
-  if (is_usable(first) && is_usable(second))
-    keep_first =
-        distance_px(*first, found_[0].points_px) <= distance_px(*second, found_[1].points_px);
+  if (both_are_known) keep_first = distance_px(*first, a_px) <= distance_px(*second, b_px);
   found_.erase(found_.begin() + (keep_first ? 1 : 0));
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/landmarks/finder/hand_finder.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "tests/services/landmarks/pictures.hpp"
 
@@ -76,6 +76,50 @@ TEST(HandFinder, AJointThatTremblesOverARestingHandIsSteadyForTheModel) {
   ASSERT_EQ(calls.size(), 1u);
   ASSERT_TRUE(calls[0].tracker_px);
   EXPECT_NEAR((*calls[0].tracker_px)[8].x, hand_px[8].x, 0.2f);
+}
+
+/// Reads one open hand at a fixed place, its thumb on the side of which it was asked for a hand.
+class TwoSidedModel final : public LandmarkModel {
+ public:
+  Traits traits() const override { return {.passes_at_first = 1}; }
+  Region region_around(const Points& points_px) const override {
+    return {centre_of(points_px), 200, 0};
+  }
+  Result<LandmarkEstimate> estimate(renderer::GreyView, const Region&, msg::Side side,
+                                    const std::optional<Points>&, EstimateTimes&) override {
+    const float to_thumb_px = side == msg::Side::left ? 30 : -30;
+    LandmarkEstimate estimate{.presence = 1};
+    estimate.points_px[0] = {300, 400};
+    for (int i = 1; i < msg::kLandmarks; ++i) {
+      const int finger = (i - 1) / 4, joint = (i - 1) % 4;
+      estimate.points_px[i] = {300 + to_thumb_px * static_cast<float>(2 - finger),
+                               300 - 25 * static_cast<float>(joint)};
+    }
+    return estimate;
+  }
+};
+
+/// The sides that are found once the tracker, which had a left and a right hand at one place, has
+/// these.
+std::vector<msg::Side> sides_found(const Hints& hints_px, const Points& both_px) {
+  HandFinder finder({std::make_unique<TwoSidedModel>(), std::nullopt}, 2);
+  const test::Grey image(720, 540, 0);
+  EXPECT_TRUE(finder.find(image.view(), {both_px, both_px}, 1));
+  const auto found = finder.find(image.view(), hints_px, 2);
+  EXPECT_TRUE(found);
+  std::vector<msg::Side> sides;
+  for (const auto& hand : *found) sides.push_back(hand.side);
+  return sides;
+}
+
+TEST(HandFinder, AHandThatIsReadAsALeftAndARightOneIsOneUnlessTheTrackerHasBoth) {
+  using enum msg::Side;
+  Points hand_px;
+  hand_px.fill({300, 300});
+  EXPECT_THAT(sides_found({hand_px, hand_px}, hand_px), testing::ElementsAre(left, right));
+  EXPECT_THAT(sides_found({hand_px, std::nullopt}, hand_px), testing::ElementsAre(left));
+  EXPECT_THAT(sides_found({std::nullopt, hand_px}, hand_px), testing::ElementsAre(right));
+  EXPECT_EQ(sides_found({std::nullopt, std::nullopt}, hand_px).size(), 1u);
 }
 
 }  // namespace
