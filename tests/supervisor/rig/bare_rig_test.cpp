@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rigs of daemons without real work: how the supervisor and its successor handle them.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -12,6 +13,7 @@
 
 #include "ipc/control/control_client.hpp"
 #include "ipc/control/rig_address.hpp"
+#include "supervisor/base/process.hpp"
 #include "supervisor/succession/adoption.hpp"
 #include "supervisor/succession/process_discovery.hpp"
 #include "tests/supervisor/scope_scratch.hpp"
@@ -169,19 +171,26 @@ TEST_F(BareRig, AServiceThatIsSwitchedOnAgainUnderTheNextSupervisorIsHeard) {
 }
 
 TEST_F(BareRig, OnlyDaemonsOfTheRigAreEndedAsStraysNotWhateverElseIsAChildOfTheKeeper) {
-  const auto notes = scratch_.path() / "notes";
+  const auto notes = scratch_.path() / "notes", ready = scratch_.path() / "ready";
   std::filesystem::create_directory(scratch_.path() / "entry");
   std::filesystem::copy_file("/bin/sleep", programs_ / "handcast-stray");
-  write_program(scratch_.path() / "entry" / "handcast",
-                "setsid sleep 1000 & echo $! > " + notes.string() +
-                    "; HANDCAST_RIG=" + control::address_of("desk").value().text + " setsid " +
-                    programs_.string() + "/handcast-stray 1000 & echo $! >> " + notes.string() +
-                    "; exec " + programs_.string() + "/handcast \"$@\"");
+  // The stray comes when the rig is ready: a rig that starts ends those that it finds.
+  write_program(
+      scratch_.path() / "entry" / "handcast",
+      fmt::format("setsid sleep 1000 & echo $! > {0}\n"
+                  "(until [ -e {1} ]; do sleep 0.05; done\n"
+                  " HANDCAST_RIG={2} exec setsid {3}/handcast-stray 1000) & echo $! >> {0}\n"
+                  "exec {3}/handcast \"$@\"",
+                  notes.string(), ready.string(), control::address_of("desk").value().text,
+                  programs_.string()));
   bin_.emplace("HANDCAST_BIN", (scratch_.path() / "entry").string());
   const auto rig = ready_rig();
   pid_t other = 0, stray = 0;
   std::ifstream(notes) >> other >> stray;
   ASSERT_TRUE(other > 0 && stray > 0);
+  std::ofstream(ready) << "now";
+  ASSERT_TRUE(eventually(
+      [&] { return proc_text(fmt::format("/proc/{}/comm", stray)) == "handcast-stray\n"; }));
   replace_supervisor(*rig);
   EXPECT_TRUE(eventually([&] { return !is_alive(stray); }));
   EXPECT_TRUE(is_alive(other));

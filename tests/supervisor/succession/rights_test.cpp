@@ -2,6 +2,7 @@
 // Services whose environment and descriptors the kernel hides, because their programs have
 // capabilities.
 #include <gmock/gmock.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -70,6 +71,12 @@ class Rights : public testing::Test {
     return found;
   }
 
+  /// Waits until a process runs its program, and so has that one's capabilities.
+  static bool runs_its_program(const Child& child) {
+    pollfd output{child.log_fd(), POLLIN, 0};
+    return poll(&output, 1, 20'000) == 1;
+  }
+
   ScopeScratch scratch_;
   std::filesystem::path program_;
 };
@@ -78,6 +85,7 @@ TEST_F(Rights, AServiceWithCapabilitiesIsFoundAndEnded) {
   as_nobody([this] {
     auto child = Child::spawn(spec());
     ASSERT_TRUE(child) << child.error().what;
+    ASSERT_TRUE(runs_its_program(*child));
     EXPECT_EQ(proc_text("/proc/" + std::to_string(child->pid()) + "/environ"), "");
     const auto found = services_soon("desk", 1);
     ASSERT_THAT(found, SizeIs(1));
@@ -102,6 +110,7 @@ TEST_F(Rights, AServiceWithCapabilitiesIsAdoptedWithItsRingsAndItsOutput) {
     spec.state_fd = state.fd();
     auto child = Child::spawn(spec);
     ASSERT_TRUE(child) << child.error().what;
+    ASSERT_TRUE(runs_its_program(*child));
 
     DescriptorStore store;
     auto kept = spec;
