@@ -66,10 +66,10 @@ class Receiver {
  private:
   void run() {
     while (!is_stopping_.load()) {
-      wait();
+      const bool may_read = wait();
       const auto now = Instant::now();
       inbox_.take_due(now);
-      if (now.mono_ns >= next_read_ns_) {
+      if (may_read) {
         read(now);
         is_query_waiting_ = server_.turn(now.mono_ns);
         next_read_ns_ = now.mono_ns + kPause_ns;
@@ -82,8 +82,9 @@ class Receiver {
     }
   }
 
-  /// Waits for the network, the next bundle, or the end of the pause after a read.
-  void wait() {
+  /// Waits for the network, the next bundle, or the end of the pause after a read. Returns false if
+  /// it did not look at the network because of the pause.
+  bool wait() {
     const auto now = now_ns();
     const bool pauses = now < next_read_ns_;
     auto until_ns = pauses ? next_read_ns_ : now + (is_query_waiting_ ? 0 : kLongestWait_ns);
@@ -97,6 +98,7 @@ class Receiver {
     const auto wait_ns = std::max<std::int64_t>(until_ns - now, 0);
     const timespec timeout{wait_ns / 1'000'000'000, wait_ns % 1'000'000'000};
     ::ppoll(waits_.data(), waits_.size(), &timeout, nullptr);
+    return !pauses;
   }
 
   void read(Instant now) {
