@@ -53,6 +53,7 @@ void add_python_folder() {
 /// What the child does. It tells by `fault` why it could not become the program.
 [[noreturn]] void become(const config::External& settings, int output, int fault) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  setpgid(0, 0);
   const sched_param normal{};
   sched_setscheduler(0, SCHED_OTHER, &normal);
   sigset_t none;
@@ -78,6 +79,10 @@ void add_python_folder() {
   (void)!write(fault, &error, sizeof error);
   _exit(EXIT_FAILURE);
 }
+
+/// Kills a program and all that it has started and left: a worker that it has forked would hold its
+/// ring, to which the next program then could not send.
+void kill_group(pid_t pid) { kill(-pid, SIGKILL); }
 
 std::string describe(int status) {
   if (WIFEXITED(status)) return fmt::format("exit {}", WEXITSTATUS(status));
@@ -141,7 +146,7 @@ void GuestProgram::pass_on_output(Deadline deadline) {
 std::optional<std::string> GuestProgram::end() {
   int status = 0;
   if (pid_ <= 0 || waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
-  pid_ = -1;
+  kill_group(std::exchange(pid_, -1));
   read_some();
   lines_.finish(now_ns());
   const auto last = lines_.last();
@@ -150,10 +155,10 @@ std::optional<std::string> GuestProgram::end() {
 
 void GuestProgram::stop(Deadline deadline) {
   if (pid_ <= 0) return;
-  kill(pid_, SIGTERM);
+  kill(-pid_, SIGTERM);
   while (!end() && !deadline.passed()) sleep_until_ns(now_ns() + kTurn_ns / 4);
   if (pid_ <= 0) return;
-  kill(pid_, SIGKILL);
+  kill_group(pid_);
   waitpid(std::exchange(pid_, -1), nullptr, 0);
 }
 

@@ -15,7 +15,8 @@
 namespace handcast::guest {
 
 /// A program of somebody else as a child of this process: it has its cores and its rig, but neither
-/// its real-time priority nor its descriptors, and it does not outlive it. One thread.
+/// its real-time priority nor its descriptors, and it does not outlive it. What it starts ends with
+/// it, unless this process is killed. One thread.
 class GuestProgram {
  public:
   /// Starts `command` in `folder`. What it prints becomes lines of the log. Errors: unavailable

@@ -80,6 +80,20 @@ TEST_F(GuestProgramTest, OneThatDoesNotStopIsKilled) {
   EXPECT_NE(kill(pid, 0), 0);
 }
 
+TEST_F(GuestProgramTest, WhatItHasStartedEndsWithIt) {
+  auto program = GuestProgram::start(shell("sleep 1000 & echo $! > worker; exit 0"));
+  ASSERT_TRUE(program) << program.error().what;
+  const auto worker = std::stoi(text_of("worker"));
+  EXPECT_EQ(end_of(*program), "exit 0");
+  const auto is_alive = [&] {
+    std::string state;
+    std::getline(std::ifstream("/proc/" + std::to_string(worker) + "/stat"), state);
+    return !state.empty() && state.find(") Z ") == std::string::npos;
+  };
+  for (const auto limit = Deadline::in(60s); is_alive() && !limit.passed();) usleep(10'000);
+  EXPECT_FALSE(is_alive());
+}
+
 TEST_F(GuestProgramTest, OneThatPrintsWithoutEndCannotKeepItsReader) {
   auto program = GuestProgram::start({.command = {"yes"}, .folder = folder_.path()});
   ASSERT_TRUE(program);
