@@ -6,111 +6,32 @@ usage: click_through.py SERVE_PAGE CHROMIUM [PICTURES]
 
 SERVE_PAGE serves a page without a rig (serve_page.cpp). PICTURES: a folder for pictures of what is seen.
 """
-import base64
 import json
-import os
 import pathlib
-import select
 import subprocess
 import sys
-import tempfile
 import time
 
-PATIENCE_S = 20
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[4] / "scripts"))
+from browser import Tab, open_browser
+
 WIDTHS = {"desktop": (1440, 900), "phone": (390, 844)}
 NAMED_ROLES = {"button", "slider", "textbox", "searchbox", "combobox", "checkbox", "switch", "radio", "spinbutton", "link"}
 
 
-class Browser:
-    """Chromium, driven by its DevTools protocol through two pipes."""
-
-    def __init__(self, program, folder):
-        to_browser, self.pipe_out = os.pipe()
-        self.pipe_in, from_browser = os.pipe()
-        options = f"--headless=new --no-sandbox --disable-gpu --remote-debugging-pipe --user-data-dir={folder} --no-first-run"
-        self.process = subprocess.Popen(["sh", "-c", f"exec {program} {options} 3<&{to_browser} 4>&{from_browser}"],
-                                        pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(to_browser)
-        os.close(from_browser)
-        self.bytes = b""
-        self.count = 0
-        self.faults = []
-
-    def close(self):
-        self.process.terminate()
-        self.process.wait()
-
-    def receive(self):
-        while b"\0" not in self.bytes:
-            if not select.select([self.pipe_in], [], [], PATIENCE_S)[0]:
-                raise AssertionError("the browser does not answer")
-            part = os.read(self.pipe_in, 1 << 20)
-            assert part, "the browser ended"
-            self.bytes += part
-        message, self.bytes = self.bytes.split(b"\0", 1)
-        return json.loads(message)
-
-    def send(self, method, session=None, **parameters):
-        self.count += 1
-        request = {"id": self.count, "method": method, "params": parameters, **({"sessionId": session} if session else {})}
-        data = json.dumps(request).encode() + b"\0"
-        while data:
-            data = data[os.write(self.pipe_out, data):]
-        while True:
-            answer = self.receive()
-            if answer.get("id") == self.count:
-                assert "error" not in answer, f"{method}: {answer.get('error')}"
-                return answer["result"]
-            self.note(answer)
-
-    @staticmethod
-    def is_refused(entry):
-        """What the desk refuses on purpose: a name that is none."""
-        return "422" in entry["text"] and entry.get("url", "").endswith("/api/record/start")
-
-    def note(self, event):
-        if event.get("method") == "Runtime.exceptionThrown":
-            self.faults.append(event["params"]["exceptionDetails"].get("exception", {}).get("description", "an exception"))
-        if event.get("method") == "Log.entryAdded" and event["params"]["entry"]["level"] == "error":
-            if self.is_refused(event["params"]["entry"]):
-                return
-            self.faults.append(event["params"]["entry"]["text"])
+def is_refused(entry):
+    """What the desk refuses on purpose: a name that is none."""
+    return "422" in entry["text"] and entry.get("url", "").endswith("/api/record/start")
 
 
-class Tab:
-    """A page that is open."""
-
-    def __init__(self, browser, url, width, height):
-        self.browser = browser
-        target = browser.send("Target.createTarget", url="about:blank")["targetId"]
-        self.target = target
-        self.session = browser.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        for domain in ("Page", "Runtime", "Log", "Accessibility"):
-            self.do(f"{domain}.enable")
-        self.do("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600)
-        # Keys go to what has the focus, whichever window the browser thinks is in front.
-        self.do("Emulation.setFocusEmulationEnabled", enabled=True)
-        self.do("Page.navigate", url=url)
-        self.wait("document.readyState === 'complete' && document.getElementById('main')", "the page")
-
-    def do(self, method, **parameters):
-        return self.browser.send(method, self.session, **parameters)
-
-    def close(self):
-        self.browser.send("Target.closeTarget", targetId=self.target)
-
-    def js(self, expression):
-        result = self.do("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
-        assert "exceptionDetails" not in result, f"{expression}: {result['exceptionDetails']}"
-        return result["result"].get("value")
+class Desk(Tab):
+    """The page, used as a person does."""
 
     def wait(self, expression, why):
-        end = time.monotonic() + PATIENCE_S
-        while not self.js(f"Boolean({expression})"):
-            if time.monotonic() > end:
-                said = self.js("document.getElementById('toast').textContent")
-                raise AssertionError(f"{why}: {expression}; the page says '{said}'")
-            time.sleep(0.05)
+        try:
+            super().wait(expression, why)
+        except AssertionError as error:
+            raise AssertionError(f"{error}; the page says '{self.js('document.getElementById(`toast`)?.textContent')}'") from None
 
     def click(self, selector):
         """As a person does: at the middle of what is seen, once it stands still."""
@@ -143,10 +64,9 @@ class Tab:
             self.click(f"#tabs a[href='#{name}']")
             self.wait(f"document.getElementById('{name}').classList.contains('shown')", "a tab")
 
-    def picture(self, folder, name):
+    def keep_picture(self, folder, name):
         if folder:
-            data = self.do("Page.captureScreenshot", format="png")["data"]
-            (folder / f"{name}.png").write_bytes(base64.b64decode(data))
+            self.picture(folder / f"{name}.png")
 
 
 def check_names(tab, where):
@@ -294,7 +214,7 @@ def check_leaks(tab):
 
 
 def check_viewer(browser, url, width, height):
-    tab = Tab(browser, url, width, height)
+    tab = Desk(browser, url, width, height)
     tab.wait("document.getElementById('link-text').textContent === 'connected as viewer'", "a viewer")
     free = tab.js("""[...document.querySelectorAll('main button, header button, main select, #groups input')]
         .filter((e) => !e.disabled).map((e) => e.id || e.textContent)""")
@@ -304,12 +224,12 @@ def check_viewer(browser, url, width, height):
 
 def click_through(browser, urls, name, folder):
     width, height = WIDTHS[name]
-    tab = Tab(browser, urls["owner"], width, height)
+    tab = Desk(browser, urls["owner"], width, height)
     tab.wait("document.getElementById('link-text').textContent === 'connected as owner'", "the start")
     assert "token" not in tab.js("location.href"), "the token is still in the address"
     check_light(tab)
     check_settings(tab)
-    tab.picture(folder, f"{name}-settings")
+    tab.keep_picture(folder, f"{name}-settings")
     check_others(tab)
     check_tools(tab)
     for part in ("picture", "looks", "cues", "services", "tools"):
@@ -318,7 +238,7 @@ def click_through(browser, urls, name, folder):
         time.sleep(0.6)
         check_width(tab, width)
         check_names(tab, part)
-        tab.picture(folder, f"{name}-{part}")
+        tab.keep_picture(folder, f"{name}-{part}")
     check_leaks(tab)
     tab.close()
     check_viewer(browser, urls["viewer"], width, height)
@@ -329,16 +249,14 @@ def main():
     folder = pathlib.Path(sys.argv[3]) if len(sys.argv) > 3 else None
     server = subprocess.Popen([serve_page], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     urls = {role: server.stdout.readline().strip() for role in ("viewer", "operator", "owner")}
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = Browser(chromium, profile)
-        try:
+    try:
+        with open_browser(chromium, is_expected=is_refused) as browser:
             for name in WIDTHS:
                 click_through(browser, urls, name, folder)
             assert not browser.faults, f"the browser complains: {browser.faults}"
-        finally:
-            browser.close()
-            server.stdin.close()
-            server.wait()
+    finally:
+        server.stdin.close()
+        server.wait()
     print("clicked through at", ", ".join(f"{width}x{height}" for width, height in WIDTHS.values()))
 
 
