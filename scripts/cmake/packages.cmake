@@ -87,6 +87,7 @@ add_custom_command(OUTPUT ${made}/handcast@.service
   COMMAND handcast install-units --print-template /usr/bin/handcast > ${made}/handcast@.service
   DEPENDS handcast
   COMMENT "Writing the unit of the package")
+include(handbook)
 
 handcast_packaged(show lib/systemd/system ${made}/handcast@.service)
 handcast_packaged(show lib/udev/rules.d config/udev/70-handcast.rules)
