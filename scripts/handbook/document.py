@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from markdown_it import MarkdownIt
 
 from handbook.anchors import anchor_of
+from handbook.chapters import name_of
 
 ELSEWHERE = re.compile(r"[a-z]+:")
 # A picture that is shown only if it has been made: <!-- picture: docs/report.png What it shows -->
@@ -63,19 +64,24 @@ def title_of(text):
     return re.search(r"^# (.*)", text, re.M)[1]
 
 
+RULES = {
+    "table_open": lambda *_: '<div class="wide"><table>\n',
+    "table_close": lambda *_: "</table></div>\n",
+    "code_block": lambda tokens, i, *_: listing(tokens[i].content),
+    "fence": lambda tokens, i, *_: listing(tokens[i].content),
+    "image": lambda tokens, i, *_: picture(tokens[i].attrGet("src"), tokens[i].content),
+    "html_block": lambda tokens, i, *_: tokens[i].meta["shown"],
+    "html_inline": lambda tokens, i, *_: html.escape(tokens[i].content),
+}
+
+
 class Reader:
-    """Reads documents. `texts`: those of all, by their paths; `made`: the paths of files that were made for them."""
+    """Reads documents. `texts`: those of all, by their paths; `made`: the paths of pictures that were made for them."""
 
     def __init__(self, texts, made):
-        self.titles, self.made = {path: title_of(text) for path, text in texts.items()}, made
+        self.names, self.made = {path: name_of(path, title_of(text)) for path, text in texts.items()}, made
         self.markdown = MarkdownIt("commonmark").enable("table")
-        for name, rule in {"table_open": lambda *_: '<div class="wide"><table>\n', "table_close": lambda *_: "</table></div>\n",
-                           "code_block": lambda tokens, i, *_: listing(tokens[i].content),
-                           "fence": lambda tokens, i, *_: listing(tokens[i].content),
-                           "image": lambda tokens, i, *_: picture(tokens[i].attrGet("src"), tokens[i].content),
-                           "html_block": lambda tokens, i, *_: tokens[i].meta.get("shown", ""),
-                           "html_inline": lambda tokens, i, *_: html.escape(tokens[i].content)}.items():
-            self.markdown.renderer.rules[name] = rule
+        self.markdown.renderer.rules.update(RULES)
 
     def read(self, path, text):
         document = Document(path, sections=[Section(1, "", "")])
@@ -111,14 +117,14 @@ class Reader:
                 link = token.attrGet("href")
                 token.attrSet("href", self.link(document, link))
                 if inner.content.endswith(".md"):  # a file's name means nothing to who reads pages
-                    inner.content = self.titles[target_of(document, link)]
+                    inner.content = self.names[target_of(document, link)]
 
     def link(self, document, link):
         """A link of the document as one of its page."""
         if link.startswith("#") or ELSEWHERE.match(link):
             return link
         path = target_of(document, link)
-        if path in self.titles:
+        if path in self.names:
             target, mark, anchor = link.partition("#")
             return address_of(target) + mark + anchor
         document.files.add(path)

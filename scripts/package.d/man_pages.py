@@ -17,7 +17,7 @@ import textwrap
 sys.dont_write_bytecode = True
 from help_text import Table, help_of, output_of
 
-SEE_ALSO = "The documents in /usr/share/doc/handcast, above all docs/operating.md and config/REFERENCE.md."
+SEE_ALSO = "The handbook, /usr/share/doc/handcast/index.html, and its documents beside it."
 
 
 def escape(text):

@@ -20,8 +20,8 @@ def documents():
 
 
 def page_of(text, made=()):
-    """A document at docs/page.md as HTML; there is another one, docs/other.md."""
-    return Reader({"docs/page.md": text, "docs/other.md": "# Another page\n"}, set(made)).read("docs/page.md", text)
+    """A document at book/page.md as HTML; there is another one, book/other.md."""
+    return Reader({"book/page.md": text, "book/other.md": "# Another page\n"}, set(made)).read("book/page.md", text)
 
 
 class ADocument(unittest.TestCase):
@@ -31,7 +31,7 @@ class ADocument(unittest.TestCase):
         self.assertIn('<a href="#page">back</a>', body)
 
     def test_names_a_page_by_its_heading_and_not_by_its_file(self):
-        self.assertIn('<a href="other.html">Another page</a>', page_of("# Page\n\n[docs/other.md](other.md)\n").body)
+        self.assertIn('<a href="other.html">Another page</a>', page_of("# Page\n\n[book/other.md](other.md)\n").body)
 
     def test_has_headings_with_the_anchors_that_check_docs_knows(self):
         page = page_of("# Page\n\n## What `up` does: *all*\n")
@@ -39,12 +39,12 @@ class ADocument(unittest.TestCase):
         self.assertEqual([section.heading for section in page.contents()], ["What up does: all"])
 
     def test_keeps_what_is_no_document_beside_it(self):
-        self.assertEqual(page_of("# Page\n\n![a](../config/a.png) [b](b.py)\n").files, {"config/a.png", "docs/b.py"})
+        self.assertEqual(page_of("# Page\n\n![a](../config/a.png) [b](b.py)\n").files, {"config/a.png", "book/b.py"})
 
     def test_shows_a_picture_only_if_it_has_been_made(self):
-        text = "# Page\n\n<!-- picture: docs/a.png What it shows -->\n"
+        text = "# Page\n\n<!-- picture: book/a.png What it shows -->\n"
         self.assertNotIn("<img", page_of(text).body)
-        self.assertIn('<img src="a.png" alt="What it shows"', page_of(text, made=["docs/a.png"]).body)
+        self.assertIn('<img src="a.png" alt="What it shows"', page_of(text, made=["book/a.png"]).body)
 
     def test_shows_marks_of_html_as_they_are_written(self):
         body = page_of("# Page\n\na <b> c\n\n    if a < b  # <b>\n").body

@@ -17,11 +17,15 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[2]
+sys.path.insert(0, str(REPOSITORY / "scripts"))
+from handbook.links import faults_of
+
 PATIENCE_S = 60
 PACKAGES = {"handcast", "handcast-tools", "handcast-lab", "libhandcast0", "libhandcast-dev", "python3-handcast"}
 NEEDED = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "git")
@@ -119,6 +123,12 @@ class ThePackages(unittest.TestCase):
     def test_say_in_the_man_page_what_help_says(self):
         page = gzip.decompress((trees["handcast"] / "usr/share/man/man1/handcast-up.1.gz").read_bytes()).decode()
         self.assertIn("\n.B \\-\\-seconds N\nStops after N seconds", page)
+
+    def test_have_a_handbook_whose_links_lead_somewhere(self):
+        folder = trees["handcast"] / "usr/share/doc/handcast"
+        self.assertTrue((folder / "index.html").is_file())
+        self.assertEqual(faults_of(folder), [])
+        self.assertLess(sum(page.stat().st_size for kind in ("html", "css", "js") for page in folder.rglob(f"*.{kind}")), 3_000_000)
 
     @skip_without("systemd-analyze")
     def test_have_a_unit_that_is_at_most_three_of_ten_exposed(self):
