@@ -8,8 +8,8 @@ namespace handcast::content::shader {
 
 /// The text of a person's shader, made fit for a driver. Each line stays on its line.
 struct GlslText {
-  std::string text;        ///< without comments, #version and #extension; names as below
-  std::string extensions;  ///< its #extension lines
+  std::string text;        ///< without comments, `#version` and `#extension`; names as below
+  std::string extensions;  ///< its `#extension` lines
   std::set<std::string, std::less<>> words;  ///< its identifiers, as the person wrote them
   std::string output;  ///< what it writes its colour to, e.g. "gl_FragColor"; "" if that is unknown
 
