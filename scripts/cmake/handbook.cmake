@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The handbook (scripts/docs): a page beside each installed document, which share their pictures. It needs two of Debian's Python packages.
-execute_process(COMMAND /usr/bin/python3 -c "import jinja2, markdown_it" RESULT_VARIABLE lacking OUTPUT_QUIET ERROR_QUIET)
-if(lacking)
+execute_process(COMMAND /usr/bin/python3 -c "import jinja2, markdown_it" RESULT_VARIABLE handbook_lacks OUTPUT_QUIET ERROR_QUIET)
+if(NOT handbook_lacks EQUAL 0)
   message(STATUS "without the handbook (python3-jinja2 python3-markdown-it)")
   return()
 endif()

@@ -25,6 +25,7 @@ from handbook.links import faults_of
 
 TEMPLATES = [pathlib.Path(__file__).parent / "templates", ROOT / "scripts/pages/templates"]
 CODE = "code/index.html"  # Doxygen's pages
+START_PICTURE = "config/assets/readme_looks.png"
 
 
 def texts_of(handcast):
@@ -58,7 +59,7 @@ def write_pages(out, documents, version):
         neighbours = [(way, address_of(each.path), name_of(each.path, each.title))
                       for way, each in (("before", before), ("after", after)) if each]
         write(out, address_of(page.path), templates.get_template("document.html"), page=page, neighbours=neighbours, **shared)
-    write(out, "index.html", templates.get_template("start.html"), **shared)
+    write(out, "index.html", templates.get_template("start.html"), picture=START_PICTURE, **shared)
     for name in ("handbook.css", "handbook.js"):
         write(out, name, templates.get_template(name))
     (out / "handbook-index.js").write_text(search.index_of(pages), encoding="utf-8")
@@ -85,7 +86,7 @@ def main():
     reader = Reader(texts, made)
     documents = {path: reader.read(path, text) for path, text in texts.items()}
     write_pages(given.out, documents, verbs.version_of(handcast) if handcast else "")
-    copy_files(given.out, {"config/assets/readme_looks.png"}.union(*(page.files for page in documents.values())), given.pictures)
+    copy_files(given.out, {START_PICTURE}.union(*(page.files for page in documents.values())), given.pictures)
     if faults := faults_of(given.out):
         sys.exit("\n".join(faults))
 

@@ -6,6 +6,7 @@ usage: tour.py OUT
 
 OUT gets them by their paths in the repository. HANDCAST_BIN: the folder of the programs (default: build/bin).
 """
+import os
 import pathlib
 import shutil
 import subprocess
@@ -58,7 +59,7 @@ def calibration(file, scratch, browser):
     shutil.copy(TWIN, scratch / "my_twin.toml")
     handcast("calibrate", "my_twin.toml", "lens", "--yes", *(word for setting in RIG for word in ("--set", setting)), cwd=scratch)
     tab = Tab(browser, (scratch / "my_twin.calibration/report.html").as_uri(), 1100, 950)
-    tab.do("Emulation.setScrollbarsHidden", hidden=True)
+    tab.js("document.documentElement.style.overflow = 'hidden'")
     tab.picture(file)
 
 
@@ -91,6 +92,7 @@ def running(pictures, scratch, browser):
 
 
 def main(out):
+    os.environ["HANDCAST_SCOPE"] = f"tour-{os.getpid()}"  # no other rig is in the way
     assets, docs = out / "config/assets", out / "docs"
     for folder in (assets, docs):
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The document of all verbs, from what they print with --help, as the man pages are."""
+import itertools
 import re
 import sys
 
@@ -16,11 +17,9 @@ def version_of(handcast):
 
 
 def prose(text):
-    """A paragraph of help as Markdown. Lines that are indented are a listing."""
-    lines = text.split("\n")
-    if any(line.startswith(" ") for line in lines):
-        return "\n".join("    " + line.strip() for line in lines)
-    return escaped(text)
+    """A paragraph of help as Markdown. Lines that are indented are listings."""
+    runs = itertools.groupby(text.split("\n"), key=lambda line: line.startswith(" "))
+    return "\n\n".join("\n".join(f"    {line.strip()}" if is_listing else escaped(line) for line in lines) for is_listing, lines in runs)
 
 
 def escaped(text):
