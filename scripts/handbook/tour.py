@@ -24,6 +24,9 @@ PATIENCE_S = 300  # ends what hangs
 TWIN = ROOT / "config/rigs/twin.toml"
 # As slow as a computer with two cores needs it, and quiet.
 RIG = ("camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false", "desk.page.listen=127.0.0.1:0")
+# On a phone, the page of the desk has tabs.
+TO_PICTURE = """getComputedStyle(document.getElementById('tabs')).display === 'none' ||
+    document.querySelector('#tabs a[href="#picture"]').click()"""
 # Whether the live picture of the desk shows a hand.
 LIVE = """(() => { const c = document.getElementById('{}'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
           return c.width > 100 && d.some((value, i) => i % 4 === 0 && value > 100); })()"""
@@ -69,7 +72,7 @@ def desk(file, address, scratch, browser):
     for width, height in ((1440, 900), (390, 900)):
         tab = Tab(browser, address, width, height)
         tab.wait("document.getElementById('link-text').textContent.startsWith('connected')", "the desk")
-        tab.js("getComputedStyle(document.getElementById('tabs')).display === 'none' || document.querySelector(`#tabs a[href='#picture']`).click()")
+        tab.js(TO_PICTURE)
         for canvas in ("camera", "light"):
             tab.wait(LIVE.replace("{}", canvas), f"the live picture: {canvas}")
         tab.picture(scratch / "view.png")

@@ -19,6 +19,11 @@ def documents():
     return {path for path in paths if not budgets.NO_DOCUMENTS.match(path)}
 
 
+def overview():
+    """What `handcast help` prints."""
+    return subprocess.run([BIN / "handcast", "help"], capture_output=True, text=True, check=True).stdout
+
+
 def page_of(text, made=()):
     """A document at book/page.md as HTML; there is another one, book/other.md."""
     return Reader({"book/page.md": text, "book/other.md": "# Another page\n"}, set(made)).read("book/page.md", text)
@@ -69,7 +74,7 @@ class TheHandbook(Made):
             self.assertEqual(len(faults_of(copy)), 1, planted)
 
     def test_explains_each_verb_with_its_options(self):
-        verbs = re.findall(r"^  ([a-z-]+)  ", subprocess.run([BIN / "handcast", "help"], capture_output=True, text=True, check=True).stdout, re.M)
+        verbs = re.findall(r"^  ([a-z-]+)  ", overview(), re.M)
         page = (self.folder / "verbs.html").read_text(encoding="utf-8")
         self.assertGreater(len(verbs), 30)
         self.assertEqual([verb for verb in verbs if f'<h3 id="{verb}">' not in page], [])
@@ -93,9 +98,8 @@ class TheTour(unittest.TestCase):
     def test_calls_verbs_that_there_are(self):
         text = (REPOSITORY / "docs/tour.md").read_text(encoding="utf-8")
         called = set(re.findall(r"^    build/bin/handcast ([a-z-]+)", text, re.M))
-        overview = subprocess.run([BIN / "handcast", "help"], capture_output=True, text=True, check=True).stdout
         self.assertGreater(len(called), 6)
-        self.assertEqual([verb for verb in called if not re.search(rf"^  {verb}  ", overview, re.M)], [])
+        self.assertEqual([verb for verb in called if not re.search(rf"^  {verb}  ", overview(), re.M)], [])
 
 
 if __name__ == "__main__":
