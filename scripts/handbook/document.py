@@ -16,6 +16,9 @@ PICTURE = re.compile(r"<!-- picture: (\S+) (.*?) -->", re.S)
 # A comment in a listing of commands or settings, to the end of its line.
 COMMENT = re.compile(r"(^|\s\s)(#\s.*)$", re.M)
 
+# A cell of a table that is not broken into lines: 0.62 ± 0.03, **5.6 / 13.3**
+FIGURE = re.compile(r"[\d\s.,/±×%()*−-]+")
+
 
 @dataclass
 class Section:
@@ -89,6 +92,8 @@ class Reader:
         for token, after in zip(tokens, [*tokens[1:], None]):
             if token.type == "heading_open":
                 self.begin_section(document, token, after)
+            elif token.type == "td_open" and FIGURE.fullmatch(after.content):
+                token.attrSet("class", "figure")
             elif token.type == "html_block":
                 token.meta["shown"] = self.picture_in(document, token.content)
             elif token.type == "inline":

@@ -8,6 +8,7 @@ import unittest
 from made_handbook import BIN, REPOSITORY, Made
 
 import budgets
+from handbook import verbs
 from handbook.chapters import CHAPTERS, VERBS
 from handbook.document import Reader
 from handbook.links import faults_of
@@ -51,6 +52,14 @@ class ADocument(unittest.TestCase):
         self.assertNotIn("<img", page_of(text).body)
         self.assertIn('<img src="a.png" alt="What it shows"', page_of(text, made=["book/a.png"]).body)
 
+    def test_keeps_figures_in_a_table_on_one_line(self):
+        body = page_of("# Page\n\n| a | b |\n|---|---|\n| 0.62 ± 0.03 | two words |\n").body
+        self.assertIn('<td class="figure">0.62 ± 0.03</td>', body)
+        self.assertIn("<td>two words</td>", body)
+
+    def test_of_help_has_listings_where_lines_are_indented(self):
+        self.assertEqual(verbs.prose("Set `a_b` to a_b:\n  --set a_b=1\nand go on."), "Set `a_b` to a\\_b:\n\n    --set a_b=1\n\nand go on.")
+
     def test_shows_marks_of_html_as_they_are_written(self):
         body = page_of("# Page\n\na <b> c\n\n    if a < b  # <b>\n").body
         self.assertIn("a &lt;b&gt; c", body)
@@ -74,10 +83,10 @@ class TheHandbook(Made):
             self.assertEqual(len(faults_of(copy)), 1, planted)
 
     def test_explains_each_verb_with_its_options(self):
-        verbs = re.findall(r"^  ([a-z-]+)  ", overview(), re.M)
+        names = re.findall(r"^  ([a-z-]+)  ", overview(), re.M)
         page = (self.folder / "verbs.html").read_text(encoding="utf-8")
-        self.assertGreater(len(verbs), 30)
-        self.assertEqual([verb for verb in verbs if f'<h3 id="{verb}">' not in page], [])
+        self.assertGreater(len(names), 30)
+        self.assertEqual([verb for verb in names if f'<h3 id="{verb}">' not in page], [])
         self.assertRegex(page, r"<code>--seconds N</code></td>\s*<td>Stops after N seconds")
 
     def test_says_in_its_index_which_words_a_section_has(self):
