@@ -12,6 +12,7 @@
 #include "config/keep_out.hpp"
 #include "config/live_files.hpp"
 #include "config/measured.hpp"
+#include "config/opening_hours.hpp"
 #include "config/settings/files.hpp"
 #include "config/settings/frozen_file.hpp"
 #include "config/settings/load.hpp"
@@ -48,6 +49,7 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "desk.gestures",
                                        "projector.lamp.password_file",
                                        "desk.page.recordings",
+                                       "watch.folder",
                                        "twin.motion",
                                        "twin.shape.mesh",
                                        "twin.geometry.calibration"};
@@ -94,7 +96,7 @@ void resolve_contents(const Listing& listing, const std::filesystem::path& folde
 
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
   for (const auto* service : {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector",
-                              "dlp", "content", "desk", "observer"})
+                              "dlp", "content", "desk", "observer", "watch"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,
@@ -130,6 +132,8 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
   check_gravity(rig.content.gravity, file, faults);
   if (const auto areas = parse_keep_out(rig.light.keep_out); !areas)
     faults.add(fmt::format("{}: light.keep_out: {}", file, areas.error().what));
+  if (const auto hours = OpeningHours::parse(rig.watch.hours); !hours)
+    faults.add(fmt::format("{}: watch.hours: {}", file, hours.error().what));
   const auto& correct = rig.cascade.correct;
   if (correct.bone_short_px >= correct.bone_long_px)
     faults.add(
@@ -216,6 +220,7 @@ static const Process* find_process(const Rig& rig, std::string_view service) {
   if (service == "content") return &rig.content.process;
   if (service == "desk") return &rig.desk.process;
   if (service == "observer") return &rig.observer.process;
+  if (service == "watch") return &rig.watch.process;
   return nullptr;
 }
 

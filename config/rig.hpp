@@ -15,6 +15,7 @@
 #include "config/sections/supervisor.hpp"
 #include "config/sections/twin.hpp"
 #include "config/sections/viewpoint.hpp"
+#include "config/sections/watch.hpp"
 #include "config/settings/frozen_file.hpp"
 #include "ipc/base/result.hpp"
 
@@ -41,6 +42,7 @@ struct Rig {
   Cascade cascade;
   Twin twin;
   Observer observer;
+  Watch watch;
   Supervisor supervisor;
   /// @}
 };
@@ -73,6 +75,7 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("twin", rig.twin,
                   "The digital twin, for the simulator and all back ends named twin.");
   visitor.section("observer", rig.observer, "The service that scores the light.");
+  visitor.section("watch", rig.watch, "The night watch: the service that looks after the rig.");
   visitor.section("supervisor", rig.supervisor, "Start, supervision and stop of the services.");
 }
 

@@ -8,7 +8,7 @@ import pathlib
 import re
 import statistics
 
-SHOW_LINES = 68_500
+SHOW_LINES = 68_800
 SHOW_FILES = 790
 MEDIAN_LINES = 64  # of a source, at least: a file is a subject, not a function. The aim is 70.
 FOLDED_LINES = 300  # a header with one user is part of it, unless the file becomes longer than this
@@ -19,9 +19,9 @@ README_LINES = 120
 DECISION_LINES = 6
 
 # What runs while there is light: neither its tools, laboratory and studies nor the drivers, of which a rig uses one or two;
-# the service that runs a stranger's program is one of them.
+# the service that runs a stranger's program is one of them, and the night watch, which changes two settings a day.
 NOT_IN_THE_SHOW = re.compile(r"services/(tools|lab|studies)/|calib/solve/|supervisor/look/|"
-                             r"services/(guest|camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
+                             r"services/(guest|watch|camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
 GENERATED = ("config/REFERENCE.md", "docs/lab/")
 NO_DOCUMENTS = re.compile(r"(build[^/]*|out|\.git|tests)/")
 # The header of a handcast_embed(): the build writes its source.

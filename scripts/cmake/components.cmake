@@ -4,7 +4,7 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME show)
 
 # handcast_component_of(folder result): the component of the programs of a folder.
 function(handcast_component_of folder result)
-  if(folder MATCHES "^services/tools/(devices|doctor|init|lamp|record)$")
+  if(folder MATCHES "^services/tools/(day|devices|doctor|init|lamp|record)$")
     set(component show)  # to set it up; and what the desk starts
   elseif(folder MATCHES "^services/tools/|^scripts/pages/calibration")
     set(component tools)

@@ -46,6 +46,8 @@ constexpr std::array kVerbs{
               Group::look},
     VerbEntry{"record", "Writes all rings of a rig to a folder, which the back ends `replay` play.",
               nullptr, Group::look},
+    VerbEntry{"day", "Prints the report of a day of the rig, and names its page.", nullptr,
+              Group::look},
     VerbEntry{"latency", "Shows the time that each step took, from exposure to light.", run_latency,
               Group::look},
     VerbEntry{"trace", "Writes the last N seconds as a Perfetto trace.", run_trace, Group::look},

@@ -135,7 +135,7 @@ class Readers {
   }
 
   std::string why_absent(const std::string& service) const {
-    if (service == "observer") return "observer.enabled is false";
+    if (service == "observer" || service == "watch") return service + ".enabled is false";
     if (service == "landmarks2") return "the rig has no second camera";
     return fmt::format("{}.backend is \"none\"", service);
   }

@@ -49,6 +49,7 @@ inline void change(const Setting& setting) {
           }
           if constexpr (std::is_same_v<T, std::vector<std::string>>)
             value->push_back(setting.name() == "keep_out" ? "1 2, 3.5 4, -5 6"
+                             : setting.name() == "hours"  ? "mon 10:00-18:00"
                                                           : "a, \"quoted\" [text] = 1");
           if constexpr (std::is_same_v<T, std::string>)
             *value = setting.path == "name" ? "another_rig"

@@ -118,12 +118,14 @@ TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
       {"desk", {}},
       {"dlp", {}},
       {"observer", {"projector"}},
-      {"exporter", {}}};
+      {"exporter", {}},
+      {"watch", {}}};
   config::Rig rig;
   rig.dlp.backend = "lightcrafter";
   rig.camera2.backend = "twin";
   rig.observer.enabled = true;
   rig.supervisor.metrics_port = 9100;
+  rig.watch.enabled = true;
   const auto catalogue = test::built_catalogue();
   std::vector<std::string> earlier;
   for (const auto& spec : services_of(rig, catalogue)) {

@@ -19,8 +19,8 @@ namespace {
 using testing::UnorderedElementsAreArray;
 using Paths = std::set<std::string>;
 
-const std::vector<std::string> kServices{"camera",  "pose", "landmarks", "projector",
-                                         "content", "desk", "observer",  "exporter"};
+const std::vector<std::string> kServices{"camera", "pose",     "landmarks", "projector", "content",
+                                         "desk",   "observer", "exporter",  "watch"};
 
 /// What the programs of this build say about themselves.
 const Catalogue& built() {
@@ -191,6 +191,11 @@ TEST(Fingerprint, TheDeskDependsOnAllThatItLetsPeopleChange) {
 TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
   expect_reads("observer", {}, truth_and({"observer", "camera.backend"}),
                {"observer.enabled", "observer.process.standby"});
+}
+
+TEST(Fingerprint, TheNightWatchDependsOnItsSectionAndOnWhetherThereIsALamp) {
+  expect_reads("watch", {}, {"watch", "projector.lamp"},
+               {"watch.enabled", "watch.process.standby"});
 }
 
 TEST(Fingerprint, TheExporterDependsOnItsPortAndOnWhatEveryServiceReads) {
