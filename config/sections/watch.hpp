@@ -28,6 +28,7 @@ void describe(Visitor& visitor, BlackBox& box) {
 /// [watch.alert]
 struct Alert {
   std::vector<std::string> command;
+  bool starts = false;
   double again_s = 3600;
   double silent_s = 10;
   double disk_gb = 2;
@@ -40,6 +41,8 @@ void describe(Visitor& visitor, Alert& alert) {
                 "The program that is told of a fault and of its end, and its arguments; the text "
                 "is its standard input: [\"mail\", \"-s\", \"handcast\", \"me@example.org\"]. "
                 "Empty: nobody is told.");
+  visitor.field("starts", alert.starts,
+                "Also tell of each start of the rig. It shows that the program works.");
   visitor.field("again_s", alert.again_s, between(0, 1e6, "s"),
                 "The shortest time between two alerts of one kind.");
   visitor.field("silent_s", alert.silent_s, between(1, 3600, "s"),

@@ -61,17 +61,22 @@ Fault* Day::open_fault(const std::string& kind) {
   return found == faults.end() ? nullptr : &*found;
 }
 
+void Day::go_on_from(const Day& before) {
+  drift = before.drift;
+  rig_started_ns = before.rig_started_ns;
+  counted_until = 0;
+  counted = before.counted;
+  lights = before.lights;
+  alerted = before.alerted;
+}
+
 Day Day::next(const std::string& next_date) const {
   Day day;
   day.rig = rig;
   day.date = next_date;
   std::ranges::copy_if(faults, std::back_inserter(day.faults),
                        [](const Fault& fault) { return fault.until.empty(); });
-  day.drift = drift;
-  day.rig_started_ns = rig_started_ns;
-  day.counted = counted;
-  day.lights = lights;
-  day.alerted = alerted;
+  day.go_on_from(*this);
   return day;
 }
 

@@ -82,6 +82,8 @@ struct Day {
   Fault* open_fault(const std::string& kind);
   /// The day after this one: what is open goes on.
   Day next(const std::string& date) const;
+  /// Takes what a watch goes on from over from another day.
+  void go_on_from(const Day& before);
 };
 
 /// Local times as reports have them.

@@ -52,11 +52,11 @@ void FaultFinder::look_at(const std::string& name, const RigStatus::Service& ser
     wrongs.erase("service " + name);
 }
 
-void FaultFinder::listen(const std::string& stream, std::uint64_t messages, bool is_ready,
+void FaultFinder::listen(const std::string& stream, std::uint64_t messages, bool must_send,
                          std::int64_t now_ns, Wrongs& wrongs) {
   auto [entry, is_new] = rings_.try_emplace(stream, Ring{messages, now_ns});
   auto& ring = entry->second;
-  if (ring.messages != messages || !is_ready) ring = {messages, now_ns};
+  if (ring.messages != messages || !must_send) ring = {messages, now_ns};
   const auto silent_s = ns_to_seconds(now_ns - ring.heard_ns);
   if (silent_s < settings_.silent_s) return;
   for (const auto& sensor : kSensors)
@@ -65,18 +65,19 @@ void FaultFinder::listen(const std::string& stream, std::uint64_t messages, bool
           fmt::format("{} for {:.0f} s, though its service runs", sensor.what, silent_s);
 }
 
-Wrongs FaultFinder::find(const RigStatus& status, double disk_free_gb, std::int64_t now_ns) {
+Wrongs FaultFinder::find(const RigStatus& status, const Seen& seen) {
   Wrongs wrongs;
-  answered_ns_ = now_ns;
-  for (const auto& [name, service] : status.services) look_at(name, service, now_ns, wrongs);
+  answered_ns_ = seen.now_ns;
+  for (const auto& [name, service] : status.services) look_at(name, service, seen.now_ns, wrongs);
   for (const auto& sensor : kSensors) {
     const auto ring = status.messages.find(sensor.stream);
     const auto service = status.services.find(sensor.service);
     if (ring == status.messages.end() || service == status.services.end()) continue;
-    listen(ring->first, ring->second, service->second.state == "ready", now_ns, wrongs);
+    const bool must_send = service->second.state == "ready" && !seen.is_switched_off;
+    listen(ring->first, ring->second, must_send, seen.now_ns, wrongs);
   }
-  if (disk_free_gb < settings_.disk_gb)
-    wrongs["disk"] = fmt::format("the disk is nearly full: {:.1f} GB are free", disk_free_gb);
+  if (seen.disk_free_gb < settings_.disk_gb)
+    wrongs["disk"] = fmt::format("the disk is nearly full: {:.1f} GB are free", seen.disk_free_gb);
   return wrongs;
 }
 

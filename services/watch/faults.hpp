@@ -19,8 +19,15 @@ class FaultFinder {
  public:
   explicit FaultFinder(const config::Alert& settings) : settings_(settings) {}
 
-  /// Of a rig whose supervisor has answered just now. Times: CLOCK_MONOTONIC.
-  Wrongs find(const RigStatus& status, double disk_free_gb, std::int64_t now_ns);
+  /// What is known at a moment.
+  struct Seen {
+    double disk_free_gb = 0;
+    /// Sensors and projector may be silent: somebody has switched them off for the night.
+    bool is_switched_off = false;
+    std::int64_t now_ns = 0;  ///< CLOCK_MONOTONIC
+  };
+  /// Of a rig whose supervisor has answered just now.
+  Wrongs find(const RigStatus& status, const Seen& seen);
   /// Of a rig whose supervisor does not answer.
   Wrongs find_without_status(std::int64_t now_ns);
 
@@ -35,8 +42,8 @@ class FaultFinder {
   };
   void look_at(const std::string& name, const RigStatus::Service& service, std::int64_t now_ns,
                Wrongs& wrongs);
-  void listen(const std::string& stream, std::uint64_t messages, bool is_ready, std::int64_t now_ns,
-              Wrongs& wrongs);
+  void listen(const std::string& stream, std::uint64_t messages, bool must_send,
+              std::int64_t now_ns, Wrongs& wrongs);
 
   config::Alert settings_;
   std::map<std::string, Service> services_;

@@ -31,23 +31,36 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown computer";
 }
 
+/// A day that was written; empty if there is none that can be read.
+std::optional<Day> written_day(const fs::path& folder, const std::string& date) {
+  auto day = load_day(folder, date);
+  if (day) return std::move(*day);
+  log::warning("the day begins anew: {}", day.error().what);
+  std::error_code failed;  // it is kept for whoever wants to look at it
+  const auto file = json_file(folder, date);
+  fs::rename(file, file.string() + ".damaged", failed);
+  return std::nullopt;
+}
+
+/// The day of a date that comes after `before`. It may have begun already: clocks are set.
+Day day_on(const fs::path& folder, const std::string& date, const Day& before) {
+  auto day = before.next(date);
+  if (auto written = written_day(folder, date)) {
+    day = std::move(*written);
+    day.go_on_from(before);
+  }
+  return day;
+}
+
 /// The day that goes on, or that follows the newest one.
 Day day_at(const fs::path& folder, const std::string& rig, std::time_t time) {
-  Day day;
-  day.rig = rig;
+  Day newest;
+  newest.rig = rig;
   const auto dates = dates_in(folder);
-  if (!dates.empty()) {
-    auto last = load_day(folder, dates.back());
-    if (last && *last) day = std::move(**last);
-    if (!last) {  // it is kept for whoever wants to look at it
-      log::warning("the day begins anew: {}", last.error().what);
-      std::error_code failed;
-      const auto file = json_file(folder, dates.back());
-      fs::rename(file, file.string() + ".damaged", failed);
-    }
-  }
+  if (!dates.empty())
+    if (auto written = written_day(folder, dates.back())) newest = std::move(*written);
   const auto today = date_of(time);
-  return day.date == today ? day : day.next(today);
+  return newest.date == today ? newest : day_on(folder, today, newest);
 }
 
 }  // namespace
@@ -90,6 +103,7 @@ NightWatch::NightWatch(Rig rig, Lights lights, config::OpeningHours hours, fs::p
       boxes_(folder_ / "faults", settings_.black_box.kept, rig_.settings, rig_.calibration) {
   for (const auto* stream : {"pose.hands", "landmarks.hands", "landmarks2.hands"}) track(stream);
   if (settings_.black_box.images && settings_.black_box.seconds > 0) track("camera.frames");
+  if (tally_.rig_is_new() && settings_.alert.starts) alert("the rig was started\n");
 }
 
 void NightWatch::track(const std::string& stream) {
@@ -122,7 +136,7 @@ void NightWatch::turn(Moment now) {
 void NightWatch::look(Moment now) {
   if (const auto date = date_of(now.time); date != day_.date) {
     save(Lasting::day);
-    day_ = day_.next(date);
+    day_ = day_on(folder_, date, day_);
     save(Lasting::minute);
     keep_days(folder_, settings_.days);
   }
@@ -173,7 +187,8 @@ void NightWatch::ask_supervisor(Moment now) {
     const auto status = status_in(answer->object["status"]);
     for (const auto& [name, service] : status.services) track(daemon::marks_stream_of(name));
     tally_.add(status, now.time);
-    wrongs = finder_.find(status, day_.disk_free_gb, now.ns);
+    const bool is_switched_off = !settings_.closing.empty() && day_.lights == false;
+    wrongs = finder_.find(status, {day_.disk_free_gb, is_switched_off, now.ns});
   } else {
     wrongs = finder_.find_without_status(now.ns);
   }
@@ -195,17 +210,21 @@ std::string NightWatch::keep_box(const FaultBook::Notice& notice, Moment now) {
 }
 
 void NightWatch::tell(const FaultBook::Notice& notice, Moment now) {
-  auto text =
-      fmt::format("handcast, rig '{}' on {}: {}\n", rig_.settings.name, host_name(), notice.text);
   log::warning("{}", notice.text);
+  std::string box;
   if (!notice.is_over) {
-    const auto box = keep_box(notice, now);
+    box = keep_box(notice, now);
     if (auto* fault = day_.open_fault(notice.kind)) fault->black_box = box;
-    if (!box.empty()) text += fmt::format("before it: {}\n", boxes_.place_of(box).string());
   }
-  text += fmt::format("the day: {}\n", page_file(folder_, day_.date).string());
-  errands_.add(settings_.alert.command, std::move(text));
+  alert(notice.text + "\n" +
+        (box.empty() ? "" : fmt::format("before it: {}\n", boxes_.place_of(box).string())));
   save(Lasting::day);
+}
+
+void NightWatch::alert(const std::string& text) {
+  errands_.add(settings_.alert.command,
+               fmt::format("handcast, rig '{}' on {}: {}the day: {}\n", rig_.settings.name,
+                           host_name(), text, page_file(folder_, day_.date).string()));
 }
 
 void NightWatch::save(Lasting lasting) {

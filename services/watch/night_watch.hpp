@@ -61,6 +61,7 @@ class NightWatch {
   void ask_supervisor(Moment now);
   void track(const std::string& stream);
   void tell(const FaultBook::Notice& notice, Moment now);
+  void alert(const std::string& text);
   std::string keep_box(const FaultBook::Notice& notice, Moment now);
   enum class Lasting { minute, day };
   void save(Lasting lasting);

@@ -25,12 +25,11 @@ bool has_hands(const msg::HandPoses& poses) {
 }  // namespace
 
 Tally::Tally(Day& day, std::int64_t rig_started_ns, std::int64_t now_ns, std::time_t time)
-    : day_(day), passed_ns_(now_ns) {
-  if (day.rig_started_ns == rig_started_ns) {
-    if (day.counted_until > 0)
-      day.up_s +=
-          static_cast<double>(std::clamp<std::int64_t>(time - day.counted_until, 0, 24 * 60 * 60));
-  } else {
+    : day_(day), rig_is_new_(day.rig_started_ns != rig_started_ns), passed_ns_(now_ns) {
+  constexpr std::int64_t kDay_s = 24 * 60 * 60;
+  if (!rig_is_new_ && day.counted_until > 0)
+    day.up_s += static_cast<double>(std::clamp<std::int64_t>(time - day.counted_until, 0, kDay_s));
+  if (rig_is_new_) {
     ++day.starts;
     day.rig_started_ns = rig_started_ns;
     day.counted.clear();

@@ -18,6 +18,9 @@ class Tally {
   /// meanwhile was up-time.
   Tally(Day& day, std::int64_t rig_started_ns, std::int64_t now_ns, std::time_t time);
 
+  /// Whether the rig was started after the day was written.
+  bool rig_is_new() const { return rig_is_new_; }
+
   /// A frame of the projector.
   void add(const msg::StageMarks& marks);
   /// A sample of the tracker.
@@ -34,6 +37,7 @@ class Tally {
 
  private:
   Day& day_;
+  bool rig_is_new_;
   std::int64_t passed_ns_;     ///< up to when pass() has counted
   std::int64_t hands_ns_ = 0;  ///< of the newest sample with hands; 0: there was none
   double visit_s_ = 0;         ///< how long they are there

@@ -37,20 +37,25 @@ std::string word(const std::string& text) {
   return quoted + '"';
 }
 
+/// Where the night watch keeps its reports: the unit may not write beside every rig file.
+std::string reports_of(const UnitSpec& spec) {
+  return fmt::format("--set \"watch.folder=%S/handcast/{}/watch\"", spec.rig);
+}
+
 /// The command of all instances. `name`: ExecStop names the rig by its file, whatever is in it.
 /// /etc is not for recordings, which are large.
 std::string command_of_template(const UnitSpec& spec) {
   return fmt::format(
       "{} up --no-keeper \"{}/%i.toml\" --out \"%L/handcast/%i\" --set \"name=%i\" --set "
-      "\"desk.page.recordings=%S/handcast/%i/recordings\"",
-      word(spec.program), kPackagedRigs);
+      "\"desk.page.recordings=%S/handcast/%i/recordings\" {}",
+      word(spec.program), kPackagedRigs, reports_of(spec));
 }
 
 std::string command_of(const UnitSpec& spec) {
   if (spec.is_template) return command_of_template(spec);
   const auto out = spec.out.empty() ? fmt::format("\"%S/handcast/{}\"", spec.rig) : word(spec.out);
-  auto command =
-      fmt::format("{} up --no-keeper {} --out {}", word(spec.program), word(spec.rig_file), out);
+  auto command = fmt::format("{} up --no-keeper {} {} --out {}", word(spec.program),
+                             word(spec.rig_file), reports_of(spec), out);
   for (const auto& setting : spec.settings) command += " --set " + word(setting);
   return command;
 }

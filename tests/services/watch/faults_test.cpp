@@ -17,8 +17,6 @@ using testing::IsEmpty;
 using testing::Key;
 using testing::Pair;
 
-constexpr double kEnough_gb = 100;
-
 class FaultFinderTest : public testing::Test {
  protected:
   RigStatus status() const {
@@ -33,17 +31,17 @@ TEST_F(FaultFinderTest, ARigThatIsWellHasNone) {
   for (int second = 0; second < 100; ++second) {
     auto well = status();
     well.messages = {{"camera.frames", second}, {"pose.hands", second}};
-    EXPECT_THAT(finder_.find(well, kEnough_gb, at_s(second)), IsEmpty());
+    EXPECT_THAT(finder_.find(well, {.disk_free_gb = 100, .now_ns = at_s(second)}), IsEmpty());
   }
 }
 
 TEST_F(FaultFinderTest, AServiceThatWasGivenUpIsNamedWithItsReason) {
   auto ill = status();
   ill.services["camera"] = {.state = "failed", .reason = "no camera 'A-2134'"};
-  EXPECT_THAT(finder_.find(ill, kEnough_gb, at_s(1)),
+  EXPECT_THAT(finder_.find(ill, {.disk_free_gb = 100, .now_ns = at_s(1)}),
               Contains(Pair("service camera", HasSubstr("given up: no camera 'A-2134'"))));
   ill.services["camera"] = {.state = "degraded", .reason = "signal 11"};
-  EXPECT_THAT(finder_.find(ill, kEnough_gb, at_s(2)),
+  EXPECT_THAT(finder_.find(ill, {.disk_free_gb = 100, .now_ns = at_s(2)}),
               Contains(Pair("service camera", HasSubstr("again and again: signal 11"))));
 }
 
@@ -52,31 +50,32 @@ TEST_F(FaultFinderTest, OneThatDiesEveryMinuteIsAFaultAndOneThatDiesEveryHourIsN
   bool was_found = false;
   for (int minute = 0; minute < 6; ++minute) {
     rig.services["pose"].restarts = minute;
-    was_found = finder_.find(rig, kEnough_gb, at_s(60 * minute)).contains("service pose");
+    was_found = finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(60 * minute)})
+                    .contains("service pose");
     EXPECT_EQ(was_found, minute == 5) << minute;
   }
   FaultFinder patient({});
   for (int hour = 0; hour < 24; ++hour) {
     rig.services["pose"].restarts = hour;
-    EXPECT_THAT(patient.find(rig, kEnough_gb, at_s(3600 * hour)), IsEmpty());
+    EXPECT_THAT(patient.find(rig, {.disk_free_gb = 100, .now_ns = at_s(3600 * hour)}), IsEmpty());
   }
 }
 
 TEST_F(FaultFinderTest, RestartsBeforeTheWatchDoNotCount) {
   auto rig = status();
   rig.services["pose"].restarts = 50;
-  EXPECT_THAT(finder_.find(rig, kEnough_gb, at_s(1)), IsEmpty());
+  EXPECT_THAT(finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(1)}), IsEmpty());
 }
 
 TEST_F(FaultFinderTest, ASensorThatIsSilentForItsTimeIsAFaultUntilItSends) {
   auto rig = status();
   rig.messages = {{"pose.hands", 7}};
-  EXPECT_THAT(finder_.find(rig, kEnough_gb, at_s(0)), IsEmpty());
-  EXPECT_THAT(finder_.find(rig, kEnough_gb, at_s(9.9)), IsEmpty());
-  EXPECT_THAT(finder_.find(rig, kEnough_gb, at_s(10)),
+  EXPECT_THAT(finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(0)}), IsEmpty());
+  EXPECT_THAT(finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(9.9)}), IsEmpty());
+  EXPECT_THAT(finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(10)}),
               Contains(Pair("silent pose.hands", HasSubstr("the tracker has sent no sample"))));
   rig.messages = {{"pose.hands", 8}};
-  EXPECT_THAT(finder_.find(rig, kEnough_gb, at_s(11)), IsEmpty());
+  EXPECT_THAT(finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(11)}), IsEmpty());
 }
 
 TEST_F(FaultFinderTest, AServiceThatIsStartedIsNotSilent) {
@@ -84,25 +83,39 @@ TEST_F(FaultFinderTest, AServiceThatIsStartedIsNotSilent) {
   rig.services["pose"].state = "starting";
   rig.messages = {{"pose.hands", 0}};
   for (int second = 0; second < 100; ++second)
-    EXPECT_THAT(finder_.find(rig, kEnough_gb, at_s(second)), IsEmpty());
+    EXPECT_THAT(finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(second)}), IsEmpty());
 }
 
 TEST_F(FaultFinderTest, AProjectorWithoutFramesIsAFault) {
   auto rig = status();
   rig.messages = {{"projection.frames", 7}};
-  finder_.find(rig, kEnough_gb, at_s(0));
-  EXPECT_THAT(finder_.find(rig, kEnough_gb, at_s(20)), Contains(Key("silent projection.frames")));
+  finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(0)});
+  EXPECT_THAT(finder_.find(rig, {.disk_free_gb = 100, .now_ns = at_s(20)}),
+              Contains(Key("silent projection.frames")));
+}
+
+TEST_F(FaultFinderTest, WhatIsSwitchedOffForTheNightMayBeSilentAndHasItsTimeInTheMorning) {
+  auto rig = status();
+  rig.messages = {{"projection.frames", 7}};
+  const auto silent = [&](double second, bool is_switched_off) {
+    return finder_.find(rig, {100, is_switched_off, at_s(second)})
+        .contains("silent projection.frames");
+  };
+  for (int second = 0; second < 100; ++second) EXPECT_FALSE(silent(second, true));
+  EXPECT_FALSE(silent(105, false));
+  EXPECT_TRUE(silent(110, false));
 }
 
 TEST_F(FaultFinderTest, ADiskThatIsNearlyFullIsAFault) {
-  EXPECT_THAT(finder_.find(status(), 1.9, at_s(1)), Contains(Pair("disk", HasSubstr("1.9 GB"))));
+  EXPECT_THAT(finder_.find(status(), {.disk_free_gb = 1.9, .now_ns = at_s(1)}),
+              Contains(Pair("disk", HasSubstr("1.9 GB"))));
 }
 
 TEST_F(FaultFinderTest, ASupervisorThatDoesNotAnswerForLongIsAFault) {
-  finder_.find(status(), kEnough_gb, at_s(100));
+  finder_.find(status(), {.disk_free_gb = 100, .now_ns = at_s(100)});
   EXPECT_THAT(finder_.find_without_status(at_s(120)), IsEmpty());
   EXPECT_THAT(finder_.find_without_status(at_s(140)), Contains(Key("supervisor")));
-  finder_.find(status(), kEnough_gb, at_s(141));
+  finder_.find(status(), {.disk_free_gb = 100, .now_ns = at_s(141)});
   EXPECT_THAT(finder_.find_without_status(at_s(142)), IsEmpty());
 }
 

@@ -81,6 +81,12 @@ class NightWatchTest : public testing::Test {
     return text_of(name);
   }
 
+  static int count_of(const std::string& part, const std::string& text) {
+    int count = 0;
+    for (auto at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
+    return count;
+  }
+
   ::handcast::test::Scratch scratch_;
   config::Rig rig_;
   ipc::Segment ring_ =
@@ -160,6 +166,19 @@ TEST_F(NightWatchTest, ProgramsRunAtTheTransitionsAndTheirFailureIsInTheReport) 
   EXPECT_EQ(text_of("opened"), "opened\n");
 }
 
+TEST_F(NightWatchTest, AStartOfTheRigIsToldIfThatIsWantedAndOneOfTheWatchIsNot) {
+  rig_.watch.alert.command = {"sh", "-c", "cat >>alerts"};
+  rig_.watch.alert.starts = true;
+  start(at("12:00:00"));
+  EXPECT_THAT(await("alerts", at("12:00:01")), HasSubstr("the rig was started"));
+  std::filesystem::remove(scratch_.path() / "alerts");
+  start(at("12:00:02"));
+  rig_.watch.alert.command = {"sh", "-c", "cat >>next"};
+  start(at("12:00:03"), 8);
+  EXPECT_NE(await("next", at("12:00:04")), "");
+  EXPECT_EQ(text_of("alerts"), "");
+}
+
 TEST_F(NightWatchTest, EachDayHasItsReportWhichIsWrittenAtClosingTimeAtMidnightAndAtTheEnd) {
   start(at("17:00:00"));
   watch_->turn(at("18:00:00"));
@@ -171,6 +190,18 @@ TEST_F(NightWatchTest, EachDayHasItsReportWhichIsWrittenAtClosingTimeAtMidnightA
   EXPECT_THAT(report_text(day("2026-12-24")), HasSubstr("the rig was started"));
   EXPECT_THAT(report_text(day("2026-12-25")), Not(HasSubstr("the rig was started")));
   EXPECT_EQ(day("2026-12-25").starts, 0);
+}
+
+TEST_F(NightWatchTest, AClockThatIsWrongAtBootLosesNoDay) {
+  start(at("12:00:00"));
+  watch_->stop(at("12:00:01"));
+  watch_.reset();
+  start(at("12:00:00", -9000), 8);  // the rig starts before the clock is set
+  watch_->turn(at("12:30:00"));
+  watch_->stop(at("12:30:01"));
+  EXPECT_EQ(count_of("the rig was started", report_text(day("2026-12-24"))), 1);
+  EXPECT_EQ(day("2026-12-24").rig_started_ns, 8);
+  EXPECT_EQ(day("2026-12-24").lights, true);
 }
 
 TEST_F(NightWatchTest, OldDaysAreRemoved) {

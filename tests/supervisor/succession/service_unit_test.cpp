@@ -67,6 +67,7 @@ TEST_P(EachUnit, KeepsItsFilesInAFolderOfItsOwnOrInThatOfOut) {
   auto spec = unit_of_desk(GetParam());
   EXPECT_THAT(unit_text(spec), AllOf(HasSubstr("\nStateDirectory=handcast/desk\n"),
                                      HasSubstr(" --out \"%S/handcast/desk\"\n"),
+                                     HasSubstr(" --set \"watch.folder=%S/handcast/desk/watch\" "),
                                      Not(HasSubstr("ReadWritePaths=\""))));
   spec.out = "/show/100% $kept";
   const auto text = unit_text(spec);
