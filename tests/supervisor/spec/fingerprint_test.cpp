@@ -280,7 +280,8 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
     for (const auto& setting : section.settings) {
       const auto& path = setting.path;
       const bool supervisors = path == "name" || path == "observer.enabled" ||
-                               path.starts_with("supervisor.") || path.ends_with(".standby");
+                               path == "watch.enabled" || path.starts_with("supervisor.") ||
+                               path.ends_with(".standby");
       const bool exporters = path == "supervisor.metrics_port" && built().contains("exporter");
       const bool simulators = path.starts_with("twin.projector.");
       EXPECT_EQ(read.contains(path), !(supervisors || simulators) || exporters) << path;
