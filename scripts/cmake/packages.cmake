@@ -90,6 +90,8 @@ add_custom_command(OUTPUT ${made}/handcast@.service
 include(handbook)
 
 handcast_packaged(show lib/systemd/system ${made}/handcast@.service)
+handcast_packaged(show lib/systemd/system supervisor/succession/units/handcast-reboot@.path)
+handcast_packaged(show lib/systemd/system supervisor/succession/units/handcast-reboot@.service)
 handcast_packaged(show lib/udev/rules.d config/udev/70-handcast.rules)
 handcast_packaged(show lib/sysusers.d ${from}/sysusers.conf RENAME handcast.conf)
 handcast_packaged(show lib/tmpfiles.d ${from}/tmpfiles.conf RENAME handcast.conf)

@@ -86,7 +86,7 @@ std::string clock_of(std::time_t time) { return local_text(time, "%H:%M:%S"); }
 std::size_t minute_of_day(std::time_t time) {
   std::tm local{};
   ::localtime_r(&time, &local);
-  return static_cast<std::size_t>(local.tm_hour * 60 + local.tm_min);
+  return static_cast<std::size_t>(local.tm_hour) * 60 + static_cast<std::size_t>(local.tm_min);
 }
 
 bool is_date(const std::string& text) {

@@ -26,11 +26,18 @@ bool FaultBook::has_open() const {
   return std::ranges::any_of(day_.faults, [](const Fault& fault) { return fault.until.empty(); });
 }
 
+double FaultBook::lasting_s(std::int64_t now_ns) const {
+  double longest_s = 0;
+  for (const auto& [kind, seen] : seen_)
+    if (kind != "disk") longest_s = std::max(longest_s, ns_to_seconds(now_ns - seen.first_ns));
+  return longest_s;
+}
+
 std::vector<FaultBook::Notice> FaultBook::look(const Wrongs& wrongs, std::int64_t now_ns,
                                                std::time_t time) {
   std::vector<Notice> notices;
   for (const auto& [kind, sentence] : wrongs) {
-    seen_ns_[kind] = now_ns;
+    seen_.try_emplace(kind, Seen{now_ns, now_ns}).first->second.last_ns = now_ns;
     auto* fault = day_.open_fault(kind);
     if (!fault && day_.faults.size() < Day::kMostFaults)
       fault = &day_.faults.emplace_back(
@@ -42,10 +49,10 @@ std::vector<FaultBook::Notice> FaultBook::look(const Wrongs& wrongs, std::int64_
   }
   for (auto& fault : day_.faults) {
     if (!fault.until.empty() || wrongs.contains(fault.kind)) continue;
-    const auto seen = seen_ns_.try_emplace(fault.kind, now_ns).first;
-    if (ns_to_seconds(now_ns - seen->second) < settings_.well_s) continue;
+    const auto seen = seen_.try_emplace(fault.kind, Seen{now_ns, now_ns}).first;
+    if (ns_to_seconds(now_ns - seen->second.last_ns) < settings_.well_s) continue;
     fault.until = moment(time);
-    seen_ns_.erase(seen);
+    seen_.erase(seen);
     if (fault.told)
       notices.push_back(
           {fault.kind,

@@ -26,13 +26,19 @@ class FaultBook {
   std::vector<Notice> look(const Wrongs& wrongs, std::int64_t now_ns, std::time_t time);
   /// True if a fault is open.
   bool has_open() const;
+  /// How long the fault that was seen first has been open, that of the disk aside: a reboot gives
+  /// no space. 0: there is none.
+  double lasting_s(std::int64_t now_ns) const;
 
  private:
   bool may_tell(const std::string& kind, std::time_t time) const;
 
   Day& day_;
   config::Alert settings_;
-  std::map<std::string, std::int64_t> seen_ns_;  ///< when each open fault was seen last
+  struct Seen {
+    std::int64_t first_ns = 0, last_ns = 0;
+  };
+  std::map<std::string, Seen> seen_;  ///< of each open fault, since the watch was started
 };
 
 }  // namespace handcast::watch

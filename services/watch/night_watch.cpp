@@ -23,7 +23,8 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t kLookEvery_ns = 1'000'000'000, kSaveEvery_ns = 60'000'000'000,
                        kTryAgain_ns = 10'000'000'000;
-constexpr auto kPatience = 500ms;  ///< with a supervisor that hangs
+constexpr auto kPatience = 500ms;    ///< with a supervisor that hangs
+constexpr double kGivesUp_s = 1800;  ///< a fault that lasts for so long does not go by itself
 constexpr double kBytesPerGb = 1e9;
 
 std::string host_name() {
@@ -193,6 +194,22 @@ void NightWatch::ask_supervisor(Moment now) {
     wrongs = finder_.find_without_status(now.ns);
   }
   for (const auto& notice : book_.look(wrongs, now.ns, now.time)) tell(notice, now);
+  if (gives_up_ != (book_.lasting_s(now.ns) >= kGivesUp_s)) give_up(now);
+}
+
+/// Asks whoever may to reboot the computer, or, if the fault is over, not to: the unit
+/// handcast-reboot@RIG.path waits for this file.
+void NightWatch::give_up(Moment now) {
+  gives_up_ = !gives_up_;
+  const auto request = folder_ / "gives-up";
+  std::error_code absent;
+  if (!gives_up_) {
+    fs::remove(request, absent);
+    return;
+  }
+  day_.note(now.time, "a fault lasts; a reboot may help");
+  if (const auto written = write_whole(request, ""); !written)
+    log::warning("{}", written.error().what);
 }
 
 /// Returns the name of the box; empty if there is none.

@@ -62,6 +62,7 @@ class NightWatch {
   void track(const std::string& stream);
   void tell(const FaultBook::Notice& notice, Moment now);
   void alert(const std::string& text);
+  void give_up(Moment now);
   std::string keep_box(const FaultBook::Notice& notice, Moment now);
   enum class Lasting { minute, day };
   void save(Lasting lasting);
@@ -78,6 +79,7 @@ class NightWatch {
   Errands errands_;
   BlackBoxes boxes_;
   std::vector<std::pair<std::string, std::unique_ptr<Track>>> tracks_;  ///< by stream
+  bool gives_up_ = false;
   std::set<std::string> tracked_;  ///< streams, also those that cannot be
   struct Note {
     std::int64_t time_ns;

@@ -166,6 +166,19 @@ TEST_F(NightWatchTest, ProgramsRunAtTheTransitionsAndTheirFailureIsInTheReport) 
   EXPECT_EQ(text_of("opened"), "opened\n");
 }
 
+TEST_F(NightWatchTest, AFaultThatLastsForHalfAnHourAsksForAReboot) {
+  rig_.watch.black_box.seconds = 0;
+  start(at("12:00:00"));
+  watch_->turn(at("12:01:00"));
+  watch_->turn(at("12:30:00"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "gives-up"));
+  watch_->turn(at("12:31:00"));
+  EXPECT_TRUE(std::filesystem::exists(folder() / "gives-up"));
+  std::filesystem::remove(folder() / "gives-up");
+  watch_->turn(at("12:32:00"));
+  EXPECT_FALSE(std::filesystem::exists(folder() / "gives-up"));  // once
+}
+
 TEST_F(NightWatchTest, AStartOfTheRigIsToldIfThatIsWantedAndOneOfTheWatchIsNot) {
   rig_.watch.alert.command = {"sh", "-c", "cat >>alerts"};
   rig_.watch.alert.starts = true;
