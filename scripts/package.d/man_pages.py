@@ -74,9 +74,11 @@ class Programs:
         if program == "handcast":
             first, *parts = self.overview.parts
             return page(program, first.partition("— ")[2], self.overview._replace(parts=parts), self.version)
-        help_text = help_of(self.folder / program)
+        verb = program.removeprefix("handcast-")
+        # Of a service that has the name of a verb (desk, watch), people read what the verb does.
+        help_text = help_of(self.handcast, verb) if verb in self.sentences else help_of(self.folder / program)
         first = next((part for part in help_text.parts if isinstance(part, str)), "")
-        return page(program, self.sentences.get(program.removeprefix("handcast-"), first), help_text, self.version)
+        return page(program, self.sentences.get(verb, first), help_text, self.version)
 
     def page_of_verb(self, verb):
         return page(f"handcast-{verb}", self.sentences[verb], help_of(self.handcast, verb), self.version)

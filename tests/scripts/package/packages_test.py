@@ -130,6 +130,16 @@ class ThePackages(unittest.TestCase):
         self.assertEqual(faults_of(folder), [])
         self.assertLess(sum(page.stat().st_size for kind in ("html", "css", "js") for page in folder.rglob(f"*.{kind}")), 3_000_000)
 
+    def test_explain_the_verb_where_a_service_has_its_name(self):
+        for verb, option in (("watch", "rig NAME"), ("desk", "renew")):
+            page = gzip.decompress((trees["handcast"] / f"usr/share/man/man1/handcast-{verb}.1.gz").read_bytes()).decode()
+            self.assertIn(f"\n.B \\-\\-{option}\n", page)
+
+    def test_have_a_reboot_that_is_not_enabled(self):
+        units = trees["handcast"] / "usr/lib/systemd/system"
+        self.assertTrue((units / "handcast-reboot@.path").is_file() and (units / "handcast-reboot@.service").is_file())
+        self.assertEqual(list(trees["handcast"].rglob("*.wants")), [])
+
     @skip_without("systemd-analyze")
     def test_have_a_unit_that_is_at_most_three_of_ten_exposed(self):
         unit = trees["handcast"] / "usr/lib/systemd/system/handcast@.service"
