@@ -117,7 +117,7 @@ std::string span_text(double seconds) {
 std::string report_text(const Day& day) {
   auto text = fmt::format("rig '{}', {}\n\n", day.rig, day.date);
   for (const auto& [name, value] : rows_of(day)) text += fmt::format("{:<10} {}\n", name, value);
-  text += fmt::format("{:<10} {}\n", "faults", day.faults.empty() ? "none" : "");
+  text += day.faults.empty() ? "faults     none\n" : "faults\n";
   for (const auto& fault : day.faults) {
     text += fmt::format("  {}\n    {}\n", span_of(fault), fault.sentence);
     if (!fault.black_box.empty()) text += fmt::format("    black box {}\n", fault.black_box);
