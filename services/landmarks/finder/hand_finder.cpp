@@ -261,22 +261,33 @@ Result<std::optional<Region>> HandFinder::best_direction(renderer::GreyView imag
 }
 
 /// Examines a region that may hold a left or a right hand. The model's score decides; if it has
-/// none, the side with the smaller sigma.
+/// none, the side with the smaller sigma. If they are nearly equal, as where the region cuts the
+/// hand off, the region of what was found decides.
 Result<void> HandFinder::examine_either_side(renderer::GreyView image, const Region& region) {
+  constexpr int kMostRegions = 4;
+  constexpr float kClear = 1.3f;  // quotient of the sigmas
   const std::size_t before = found_.size();
-  if (auto examined = examine(image, {msg::Side::left, region, std::nullopt}); !examined)
-    return examined;
   if (model_.landmarks->traits().scores_sides) {
+    if (auto examined = examine(image, {msg::Side::left, region, std::nullopt}); !examined)
+      return examined;
     if (found_.size() > before)
       found_.back().side = found_.back().left_score >= 0.5f ? msg::Side::left : msg::Side::right;
     return {};
   }
-  if (auto examined = examine(image, {msg::Side::right, region, std::nullopt}); !examined)
-    return examined;
-  if (found_.size() < before + 2) return {};
-  const bool is_left = sigma_of(found_[before]) <= sigma_of(found_[before + 1]);
-  found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(before + (is_left ? 1 : 0)));
-  return {};
+  Region seen = region;
+  for (int i = 1;; ++i) {
+    found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(before), found_.end());
+    for (const auto side : {msg::Side::left, msg::Side::right})
+      if (auto examined = examine(image, {side, seen, std::nullopt}); !examined) return examined;
+    if (found_.size() < before + 2) return {};
+    const float left = sigma_of(found_[before]), right = sigma_of(found_[before + 1]);
+    if (i < kMostRegions && std::max(left, right) < kClear * std::min(left, right)) {
+      seen = model_.landmarks->region_around(found_[before + (left <= right ? 0 : 1)].points_px);
+      continue;
+    }
+    found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(before + (left <= right ? 1 : 0)));
+    return {};
+  }
 }
 
 /// Changes the side of a hand that the tracker does not have, if its mean left score clearly
