@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/lab/training/generator.hpp"
 
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace handcast::landmarks::training {
@@ -31,10 +32,13 @@ void Generator::make_hand(Dice& dice) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
   const JointFrames joints = moved(draw_view(dice, pose.joints), pose.joints);
-  const Points truth_px = project(camera_, joints),
-               tracker_px = draw_tracker(dice, camera_, people_, person, pose, joints);
+  sample_.has_tracker = dice.chance(0.65f);
+  // Without a tracker, nothing in the image tells another definition from the usual one.
+  const Definitions definitions = sample_.has_tracker ? draw_definitions(dice) : Definitions{};
+  const JointFrames labelled = defined(joints, definitions);
+  const Points truth_px = project(camera_, labelled),
+               tracker_px = draw_tracker(dice, camera_, people_, person, pose, joints, definitions);
   sample_.has_hand = 1;
-  sample_.has_tracker = dice.chance(0.75f);
   const Region region = draw_region(dice, truth_px, sample_.has_tracker ? &tracker_px : nullptr);
   sample_.truth = handcast_network::to_places(region, msg::Side::right, truth_px);
   sample_.tracker = handcast_network::to_places(region, msg::Side::right, tracker_px);
@@ -46,24 +50,31 @@ void Generator::make_hand(Dice& dice) {
   scene_.draw(dice, light);
   for (int i = 0; i < msg::kLandmarks; ++i) {
     const int joint = msg::kJointOfLandmark[i];
-    sample_.visible[i] = scene_.sees(glm::vec3(joints[joint][3]), person.radius_m[joint]);
+    sample_.visible[i] = scene_.sees(glm::vec3(labelled[joint][3]), person.radius_m[joint]);
   }
 }
 
-/// An image without a hand; the tracker may still have one.
+/// An image without a hand, but often with a forearm; the tracker may still have a hand.
 void Generator::make_other(Dice& dice) {
   const Person& person = pick_person(dice);
   const Pose pose = draw_pose(dice, person);
   const JointFrames joints = moved(draw_view(dice, pose.joints), pose.joints);
-  const Points tracker_px = project(camera_, joints);
-  const Region region = draw_region(dice, tracker_px, nullptr);
+  Points tracker_px = project(camera_, joints);
+  const bool has_arm = dice.chance(0.5f);
+  const Region region =
+      has_arm ? draw_arm_region(dice, tracker_px) : draw_region(dice, tracker_px, nullptr);
+  if (has_arm)
+    tracker_px = shifted(tracker_px,
+                         region.centre_px - handcast_network::region_around(tracker_px).centre_px);
   sample_.has_hand = 0;
-  sample_.has_tracker = dice.chance(0.5f);
+  sample_.has_tracker = dice.chance(has_arm ? 0.25f : 0.5f);
   sample_.tracker = sample_.truth =
       handcast_network::to_places(region, msg::Side::right, tracker_px);
   sample_.visible.fill(0);
+  const Light light(dice, glm::vec3(joints[9][3]));
   scene_.clear(region);
-  scene_.draw(dice, Light(dice, glm::vec3(joints[9][3])));
+  if (has_arm) scene_.add_hand(dice, person, joints, light);
+  scene_.draw(dice, light);
 }
 
 void Generator::finish(Dice& dice) {
@@ -82,7 +93,7 @@ void Generator::finish(Dice& dice) {
 
 const Sample& Generator::make(std::uint64_t number) {
   Dice dice(seed_, number);
-  if (dice.chance(0.06f))
+  if (dice.chance(0.09f))
     make_other(dice);
   else
     make_hand(dice);

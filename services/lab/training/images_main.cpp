@@ -64,7 +64,7 @@ Result<void> write_contact_sheet(Generator& generator, int count,
 int main(int argc, char** argv) try {
   using namespace handcast::landmarks::training;
   std::uint64_t seed = 1, first = 0, count = 1000;
-  int people = 160, preview = 0;
+  int people = 200, preview = 0;
   std::string picture = "training.png";
   constexpr handcast::CommandLine::Range kAny{0, 1e15};
   handcast::CommandLine line(

@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "services/lab/twin/surface.hpp"
-
 namespace handcast::landmarks::training {
 namespace {
 
-using renderer::HandMesh;
 using renderer::HandShape;
 
-glm::vec3 draw_shift(Dice& dice, float deviation_mm) {
-  return {dice.normal(deviation_mm), dice.normal(deviation_mm), dice.normal(deviation_mm)};
+glm::vec3 draw_shift(Dice& dice, float deviation) {
+  return {dice.normal(deviation), dice.normal(deviation), dice.normal(deviation)};
 }
 
 /// Varies the lengths of a hand and the places of its joints: trackers define wrist, root of the
@@ -40,35 +37,6 @@ HandShape draw_shape(Dice& dice) {
   return shape;
 }
 
-/// A point in millimetres and its normal, in the axes of a joint at rest.
-struct Seen {
-  glm::vec3 place_mm, normal;
-};
-
-Seen seen_from(const HandMesh& mesh, int joint, std::size_t vertex) {
-  const glm::mat4 joint_from_model = glm::inverse(mesh.rest[joint]);
-  return {glm::vec3(joint_from_model * glm::vec4(mesh.positions[vertex], 1)) * 1e3f,
-          glm::mat3(joint_from_model) * mesh.normals[vertex]};
-}
-
-Skin skin_at(const HandMesh& mesh, std::size_t vertex) {
-  for (int finger = 0; finger < 5; ++finger) {
-    const Seen tip = seen_from(mesh, kTip[finger], vertex);
-    const glm::vec3 p = tip.place_mm;
-    if (tip.normal.y > 0.45f && p.z > -2 && p.z < 13 && std::abs(p.x) < 8 && std::abs(p.y) < 14)
-      return Skin::nail;
-    for (int joint = kFirstPhalanx[finger] + 1; joint < kTip[finger]; ++joint) {
-      const Seen bent = seen_from(mesh, joint, vertex);
-      if (std::abs(bent.place_mm.z) > 5 || std::abs(bent.place_mm.x) > 12 ||
-          std::abs(bent.place_mm.y) > 14)
-        continue;
-      if (bent.normal.y > 0.4f) return Skin::knuckle;
-      if (bent.normal.y < -0.4f) return Skin::crease;
-    }
-  }
-  return Skin::plain;
-}
-
 }  // namespace
 
 Result<std::vector<Person>> draw_people(int count, std::uint64_t seed) {
@@ -78,15 +46,8 @@ Result<std::vector<Person>> draw_people(int count, std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     Dice dice(seed ^ 0x70656f706c65, static_cast<std::uint64_t>(i));
     const HandShape shape = draw_shape(dice);
-    Person person{renderer::refit_hand(*model, shape),
-                  twin::Articulation(shape),
-                  renderer::joint_radii_m(shape),
-                  {},
-                  {}};
-    person.behind_m = twin::behind_wrist_m(person.mesh);
-    for (std::size_t v = 0; v < person.mesh.vertex_count(); ++v)
-      person.skin.push_back(skin_at(person.mesh, v));
-    people.push_back(std::move(person));
+    people.push_back({FleshModel(renderer::refit_hand(*model, shape)), twin::Articulation(shape),
+                      renderer::joint_radii_m(shape)});
   }
   return people;
 }
@@ -183,8 +144,8 @@ void pinch(Dice& dice, const Person& person, Bend& bend, int finger) {
 }
 
 Bend draw_bend(Dice& dice, const Person& person) {
-  enum Kind { relaxed, single_fingers, all_alike, fist, flat, pinching, free };
-  constexpr std::array<float, 7> kShare{0.2f, 0.3f, 0.12f, 0.08f, 0.08f, 0.14f, 0.08f};
+  enum Kind { relaxed, single_fingers, all_alike, fist, flat, pinching, pointing, gripping, free };
+  constexpr std::array<float, 9> kShare{0.12f, 0.2f, 0.1f, 0.08f, 0.08f, 0.12f, 0.1f, 0.12f, 0.08f};
   int kind = 0;
   for (float at = dice.uniform(); kind < free && at >= kShare[kind]; ++kind) at -= kShare[kind];
 
@@ -200,6 +161,8 @@ Bend draw_bend(Dice& dice, const Person& person) {
     }
     if (kind == all_alike) amount = std::clamp(all + dice.normal(0.08f), 0.0f, 1.05f);
     if (kind == fist) amount = dice.between(0.88f, 1.08f);
+    if (kind == pointing) amount = finger == 1 ? dice.normal(0.06f) : dice.between(0.7f, 1.08f);
+    if (kind == gripping) amount = std::clamp(0.35f + 0.4f * all + dice.normal(0.08f), 0.0f, 1.05f);
     if (kind == flat) amount = dice.normal(0.05f);
     curl(dice, bend, finger, amount);
     if (kind == free || (kind == single_fingers && dice.chance(0.15f)))
@@ -207,7 +170,8 @@ Bend draw_bend(Dice& dice, const Person& person) {
     const float spread = kind == flat ? dice.between(-0.04f, 0.16f) : 0.05f * (1 - amount);
     bend.splay[finger] = (2.4f - static_cast<float>(finger)) * spread + dice.normal(0.07f);
   }
-  if (kind == fist ? dice.chance(0.75f) : kind == all_alike && all > 0.7f && dice.chance(0.5f))
+  if (kind == fist || kind == pointing ? dice.chance(0.75f)
+                                       : kind == all_alike && all > 0.7f && dice.chance(0.5f))
     lay_thumb_over(dice, bend);
   if (kind == pinching) pinch(dice, person, bend, dice.chance(0.55f) ? 1 : 1 + dice.pick(4));
   return bend;
@@ -228,6 +192,19 @@ Pose pose_of(const Person& person, const Posture& posture) {
       pose.joints[joint] = turn * pose.joints[joint];
   }
   return pose;
+}
+
+Definitions draw_definitions(Dice& dice) {
+  Definitions definitions;
+  for (auto& shift_m : definitions) shift_m = draw_shift(dice, 0.0012f);
+  for (const int joint : {kWristJoint, kThumbRoot}) definitions[joint] = draw_shift(dice, 0.004f);
+  return definitions;
+}
+
+JointFrames defined(JointFrames joints, const Definitions& definitions) {
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    joints[j] = glm::translate(joints[j], definitions[j]);
+  return joints;
 }
 
 bool penetrates(const Person& person, const JointFrames& joints) {

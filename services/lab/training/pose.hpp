@@ -3,22 +3,17 @@
 #include <array>
 #include <vector>
 
-#include "renderer/hand/hand_mesh.hpp"
 #include "services/lab/training/dice.hpp"
+#include "services/lab/training/flesh.hpp"
 #include "services/lab/twin/articulation.hpp"
 
 namespace handcast::landmarks::training {
 
-/// Parts of the skin that reflect differently.
-enum class Skin : std::uint8_t { plain, nail, knuckle, crease };
-
 /// One person's right hand.
 struct Person {
-  renderer::HandMesh mesh;                        ///< the surface and the joints at rest
+  FleshModel flesh;                               ///< the surface and the joints at rest
   twin::Articulation articulation;                ///< how its joints bend
   std::array<float, renderer::kJoints> radius_m;  ///< of the flesh around each joint
-  std::vector<Skin> skin;                         ///< of each vertex
-  std::vector<float> behind_m;                    ///< distance of each vertex behind the wrist
 };
 
 /// Draws hands that differ in the lengths of fingers and palm and in their widths. Takes a quarter
@@ -27,7 +22,7 @@ Result<std::vector<Person>> draw_people(int count, std::uint64_t seed);
 
 /// The joints at the wrist, at the root of each finger's first phalanx and at its tip, thumb first.
 /// @{
-inline constexpr int kWristJoint = 1;
+inline constexpr int kWristJoint = 1, kThumbRoot = 2;
 inline constexpr std::array<int, 5> kFirstPhalanx{3, 7, 12, 17, 22};
 inline constexpr std::array<int, 5> kTip{5, 10, 15, 20, 25};
 /// @}
@@ -48,9 +43,16 @@ struct Pose {
 /// The pose of a person in this posture.
 Pose pose_of(const Person& person, const Posture& posture);
 
-/// Draws a pose: relaxed, spread, each finger on its own, fists, pinches. No finger penetrates
-/// another one or the palm.
+/// Draws a pose: relaxed, spread, gripping, pointing, each finger on its own, fists, pinches. No
+/// finger penetrates another one or the palm.
 Pose draw_pose(Dice& dice, const Person& person);
+
+/// Where a tracker and its person have their joints: displacements from those of the flesh, by
+/// joint, in its axes (metres). Trackers define wrist and root of the thumb each in their own way.
+using Definitions = std::array<glm::vec3, renderer::kJoints>;
+Definitions draw_definitions(Dice& dice);
+/// Joints with these displacements.
+renderer::JointFrames defined(renderer::JointFrames joints, const Definitions& definitions);
 
 /// True if a finger is deeper in another one or in the palm than flesh can be compressed.
 bool penetrates(const Person& person, const renderer::JointFrames& joints);

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "renderer/skin/skinning.hpp"
-
 namespace handcast::landmarks::training {
 namespace {
 
@@ -52,18 +50,17 @@ class Grain {
 };
 
 /// Sets the albedo of each vertex. A glove has no nails, knuckles or creases, but a weave.
-void paint_skin(Dice& dice, const Person& person, float tone, bool gloved,
+void paint_skin(Dice& dice, const FleshModel& model, float tone, bool gloved,
                 std::vector<float>& albedo) {
   const Grain grain(dice);
   const float speckle = dice.between(0, gloved ? 0.15f : 0.06f);
   std::array<float, 4> by_kind{1, dice.chance(0.7f) ? dice.between(0.7f, 1.4f) : 1,
                                dice.between(0.78f, 1.05f), dice.between(0.7f, 1.02f)};
   if (gloved) by_kind.fill(1);
-  albedo.resize(person.mesh.vertex_count());
+  albedo.resize(model.mesh.vertex_count());
   for (std::size_t v = 0; v < albedo.size(); ++v)
-    albedo[v] = tone * by_kind[static_cast<std::size_t>(person.skin[v])] *
-                grain.at(person.mesh.positions[v]) *
-                (1 + speckle * (2 * dice.uniform() - 1) * 1.7f);
+    albedo[v] = tone * by_kind[static_cast<std::size_t>(model.skin[v])] *
+                grain.at(model.mesh.positions[v]) * (1 + speckle * (2 * dice.uniform() - 1) * 1.7f);
 }
 
 std::vector<glm::vec3> balls_in(const JointFrames& joints) {
@@ -79,11 +76,11 @@ std::vector<glm::vec3> balls_in(const JointFrames& joints) {
 }
 
 /// Bends the part behind the wrist about the wrist, gradually over the first 25 mm.
-void bend_wrist(const Person& person, const glm::mat4& camera_from_wrist,
+void bend_wrist(const FleshModel& model, const glm::mat4& camera_from_wrist,
                 const glm::mat4& camera_from_arm, Surface& surface) {
   const glm::mat4 bent = camera_from_arm * glm::inverse(camera_from_wrist);
   for (std::size_t v = 0; v < surface.positions.size(); ++v) {
-    const float share = std::clamp((person.behind_m[v] + 0.005f) / 0.025f, 0.0f, 1.0f);
+    const float share = std::clamp((model.behind_m[v] + 0.005f) / 0.025f, 0.0f, 1.0f);
     if (share <= 0) continue;
     surface.positions[v] =
         glm::mix(surface.positions[v], glm::vec3(bent * glm::vec4(surface.positions[v], 1)), share);
@@ -138,27 +135,29 @@ void Scene::add_hand(Dice& dice, const Person& person, const JointFrames& in_cam
 
   Shot& hand = next_shot();
   hand.is_arm = false;
-  hand.surface.positions.resize(person.mesh.vertex_count());
-  hand.surface.normals.resize(person.mesh.vertex_count());
-  renderer::skin(person.mesh, in_camera, hand.surface.positions, hand.surface.normals);
-  bend_wrist(person, in_camera[kWristJoint], camera_from_arm, hand.surface);
+  const Flesh flesh = draw_flesh(dice, person.flesh);
+  const FleshModel& model = *flesh.model;
+  hand.surface.positions.resize(model.mesh.vertex_count());
+  hand.surface.normals.resize(model.mesh.vertex_count());
+  twin::pose(flesh.hand, in_camera, hand.surface.positions, hand.surface.normals);
+  bend_wrist(model, in_camera[kWristJoint], camera_from_arm, hand.surface);
   const float fatter_m = dice.normal(0.0007f) + (gloved ? dice.between(0, 0.003f) : 0);
   for (std::size_t v = 0; v < hand.surface.positions.size(); ++v)
     hand.surface.positions[v] += fatter_m * hand.surface.normals[v];
-  paint_skin(dice, person, tone, gloved, hand.surface.albedo);
-  hand.triangles = &person.mesh.triangles;
+  paint_skin(dice, model, tone, gloved, hand.surface.albedo);
+  hand.triangles = &model.mesh.triangles;
   light.shade(hand.surface, hand.grey);
   if (dice.chance(0.75f))
     occlude(hand.surface, balls_in(in_camera), dice.between(0.2f, 1.8f), hand.grey);
-  add_arm(dice, person, camera_from_arm, tone, light);
+  add_arm(dice, flesh.hand.mesh, camera_from_arm, tone, light);
 }
 
-void Scene::add_arm(Dice& dice, const Person& person, const glm::mat4& camera_from_arm, float tone,
-                    const Light& light) {
+void Scene::add_arm(Dice& dice, const renderer::HandMesh& hand, const glm::mat4& camera_from_arm,
+                    float tone, const Light& light) {
   Shot& shot = next_shot();
   shot.is_arm = true;
-  shot.arm = twin::make_forearm(person.mesh,
-                                dice.chance(0.5f) ? dice.between(0.06f, 0.2f) : twin::kBareArm_m);
+  shot.arm =
+      twin::make_forearm(hand, dice.chance(0.5f) ? dice.between(0.06f, 0.2f) : twin::kBareArm_m);
   const float skin = tone * dice.between(0.85f, 1.15f), cloth = tone * dice.between(0.05f, 1.9f),
               hair = dice.between(0, 0.12f);
   const std::size_t count = shot.arm.positions.size();

@@ -65,13 +65,17 @@ renderer::JointFrames moved(const glm::mat4& m, const renderer::JointFrames& joi
 Points project(const calib::CameraModel& camera, const renderer::JointFrames& in_camera);
 
 /// Draws a tracker's joints for this hand, in camera pixels: with errors in size, position and
-/// pose; in one image of five in another pose.
+/// pose; in one image of five in another pose. `definitions`: where it has its joints.
 Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vector<Person>& people,
-                    const Person& person, const Pose& pose, const renderer::JointFrames& in_camera);
+                    const Person& person, const Pose& pose, const renderer::JointFrames& in_camera,
+                    const Definitions& definitions);
 
 /// Draws the region that a detector would use: around the landmarks of the image before, or around
 /// the tracker's joints. `tracker_px`: null if there is no tracker.
 Region draw_region(Dice& dice, const Points& truth_px, const Points* tracker_px);
+/// Draws a region beyond the wrist of a hand, in which none of its fingers is: where a detector
+/// without a tracker may look for a hand, too.
+Region draw_arm_region(Dice& dice, const Points& hand_px);
 
 /// Lit hands with their forearms and sleeves, drawn directly into the crop. Keeps its buffers; one
 /// thread.
@@ -108,8 +112,8 @@ class Scene {
     bool is_arm = false;
   };
   Shot& next_shot();
-  void add_arm(Dice& dice, const Person& person, const glm::mat4& camera_from_arm, float tone,
-               const Light& light);
+  void add_arm(Dice& dice, const renderer::HandMesh& hand, const glm::mat4& camera_from_arm,
+               float tone, const Light& light);
   glm::vec2 fine_px(const glm::vec3& place_m) const;
   void cast_shadows(const Light& light, float depth);
   void gather();

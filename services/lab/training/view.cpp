@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "services/lab/training/scene.hpp"
@@ -68,10 +70,15 @@ JointFrames moved(const glm::mat4& m, const JointFrames& joints) {
   return result;
 }
 
+/// Back or palm face the camera, or the hand's edge does, where most is hidden.
 glm::mat4 draw_view(Dice& dice, const JointFrames& joints) {
   const float kind = dice.uniform();
   float spin = dice.between(-kPi, kPi);
-  if (kind < 0.55f) spin = (dice.chance(0.5f) ? kPi : 0) + dice.normal(0.45f);
+  const float side = dice.chance(0.5f) ? 1.f : -1.f;
+  if (kind < 0.3f)
+    spin = (side > 0 ? kPi : 0) + dice.normal(0.45f);
+  else if (kind < 0.7f)
+    spin = side * 0.5f * kPi + dice.normal(0.35f);
   glm::mat4 turned = turn(spin, {0, 1, 0}) * upright();
   if (kind > 0.94f)
     turned = turn(dice.between(-kPi, kPi), draw_direction(dice)) * turned;
@@ -97,7 +104,8 @@ Points project(const calib::CameraModel& camera, const JointFrames& in_camera) {
 }
 
 Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vector<Person>& people,
-                    const Person& person, const Pose& pose, const JointFrames& in_camera) {
+                    const Person& person, const Pose& pose, const JointFrames& in_camera,
+                    const Definitions& definitions) {
   const Person& model =
       dice.chance(0.75f)
           ? person
@@ -113,7 +121,8 @@ Points draw_tracker(Dice& dice, const calib::CameraModel& camera, const std::vec
   camera_from_wrist[3] = {0, 0, 0, 1};
   camera_from_wrist = wrong * camera_from_wrist;
   camera_from_wrist[3] = wrist;
-  Points points_px = project(camera, moved(camera_from_wrist, pose_of(model, posture).joints));
+  Points points_px = project(
+      camera, defined(moved(camera_from_wrist, pose_of(model, posture).joints), definitions));
   misplace(dice, points_px, std::max(60.0f, palm_length_px(project(camera, in_camera))));
   if (dice.chance(0.02f))
     for (int k = 5; k < 9; ++k)
@@ -129,6 +138,23 @@ Region draw_region(Dice& dice, const Points& truth_px, const Points* tracker_px)
   region.centre_px +=
       region.size_px * glm::vec2(dice.normal(0.06f * size), dice.normal(0.06f * size));
   region.size_px *= std::exp(dice.normal(0.1f * size));
+  return region;
+}
+
+Region draw_arm_region(Dice& dice, const Points& hand_px) {
+  Region region = handcast_network::region_around(hand_px);
+  const glm::vec2 along = glm::normalize(hand_px[0] - hand_px[9]);
+  region.centre_px += dice.normal(0.15f) * region.size_px * glm::vec2(-along.y, along.x);
+  region.angle_rad += dice.normal(0.8f);
+  region.size_px *= std::exp(dice.normal(0.25f));
+  const auto shows_fingers = [&] {
+    const auto places = handcast_network::to_places(region, msg::Side::right, hand_px);
+    return std::ranges::any_of(places.begin() + 1, places.end(), [](glm::vec2 place) {
+      return place.x > 0 && place.x < 1 && place.y > 0 && place.y < 1;
+    });
+  };
+  do region.centre_px += 0.1f * region.size_px * along;
+  while (shows_fingers());
   return region;
 }
 

@@ -103,6 +103,30 @@ TEST(TrainingImages, LabelsLieOnTheHand) {
   EXPECT_GT(on_hand, 0.99 * all);
 }
 
+TEST(TrainingImages, AForearmIsShownWithoutItsFingers) {
+  const calib::CameraModel camera;
+  int with_arm = 0;
+  for (std::uint64_t n = 0; n < 40; ++n) {
+    Dice dice(kSeed, n);
+    const Person& person = people()[n % people().size()];
+    const Pose pose = draw_pose(dice, person);
+    const auto joints = moved(draw_view(dice, pose.joints), pose.joints);
+    const Points hand_px = project(camera, joints);
+    const Region region = draw_arm_region(dice, hand_px);
+    const auto places = handcast_network::to_places(region, msg::Side::right, hand_px);
+    for (int i = 1; i < msg::kLandmarks; ++i)
+      EXPECT_TRUE(glm::any(glm::lessThan(places[i], glm::vec2(0))) ||
+                  glm::any(glm::greaterThan(places[i], glm::vec2(1))))
+          << "hand " << n << ", landmark " << i;
+    const Light light(dice, glm::vec3(joints[9][3]));
+    Scene scene(camera, region);
+    scene.add_hand(dice, person, joints, light);
+    scene.draw(dice, light);
+    with_arm += std::ranges::any_of(scene.cover(), [](float cover) { return cover > 0.5f; });
+  }
+  EXPECT_GT(with_arm, 30);
+}
+
 TEST(TrainingImages, NoFingerIsInsideAnother) {
   for (std::uint64_t n = 0; n < 300; ++n) {
     Dice dice(kSeed, n);
@@ -134,7 +158,7 @@ TEST(TrainingImages, FingersAreOpenAndFoldedAlike) {
   EXPECT_LT(folded, 0.75 * all);
 }
 
-TEST(TrainingImages, TheTrackerIsThereInThreeQuartersAndOffByAFifthOfThePalm) {
+TEST(TrainingImages, TheTrackerIsThereInTwoThirdsAndOffByAFifthOfThePalm) {
   int with_tracker = 0, hands = 0;
   std::vector<float> off;
   for (std::uint64_t n = 0; n < 400; ++n) {
@@ -145,7 +169,7 @@ TEST(TrainingImages, TheTrackerIsThereInThreeQuartersAndOffByAFifthOfThePalm) {
     if (sample.has_hand && sample.has_tracker)
       off.push_back(distance_px(sample.truth, sample.tracker) / palm);
   }
-  EXPECT_NEAR(static_cast<double>(with_tracker) / hands, 0.75, 0.07);
+  EXPECT_NEAR(static_cast<double>(with_tracker) / hands, 0.65, 0.07);
   std::ranges::nth_element(off, off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2));
   EXPECT_NEAR(off[off.size() / 2], 0.25, 0.1);
 }
