@@ -13,7 +13,7 @@ SHOW_FILES = 790
 MEDIAN_LINES = 64  # of a source, at least: a file is a subject, not a function. The aim is 70.
 FOLDED_LINES = 300  # a header with one user is part of it, unless the file becomes longer than this
 UNFOLDED_HEADERS = 3  # the most that may be left to fold. The aim is none.
-DOCUMENT_WORDS = 53_500  # without the generated ones
+DOCUMENT_WORDS = 53_000  # without the generated ones
 DOCUMENT_COLUMNS = 120
 README_LINES = 120
 DECISION_LINES = 6
@@ -22,7 +22,7 @@ DECISION_LINES = 6
 # the service that runs a stranger's program is one of them, and the night watch, which changes two settings a day.
 NOT_IN_THE_SHOW = re.compile(r"services/(tools|lab|studies)/|calib/solve/|supervisor/look/|"
                              r"services/(guest|watch|camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
-GENERATED = ("config/REFERENCE.md", "docs/lab/")
+GENERATED = ("config/REFERENCE.md", "docs/lab/", "services/lab/training/MODEL_CARD.md")
 NO_DOCUMENTS = re.compile(r"(build[^/]*|out|\.git|tests)/")
 # The header of a handcast_embed(): the build writes its source.
 EMBEDDED = re.compile(r"^extern const std::string_view k", re.M)

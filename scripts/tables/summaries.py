@@ -63,7 +63,8 @@ def pairs(runs, people):
 def unseen_pairs(runs, people):
     """The same, and the figures of each mesh."""
     yield from pairs(runs, people)
-    notes = {"implicit": ", on which nothing was tuned, and whose skin is nearer to the drawn one,"}
+    notes = {"webxr": ", which our network has not seen,",
+             "implicit": ", on which no constant was chosen, but whose like our network has seen,"}
     parts = []
     for mesh in runs.meshes:
         alone = runs.of_mesh(mesh)
