@@ -69,10 +69,13 @@ Result<void> add_line(std::string_view line, std::size_t number, Table& table) {
                                             table.values.size() - before, table.columns));
 }
 
-/// The first line names the columns.
+/// The first line names the columns; those of a table without it would lose a hand.
 Result<Table> read_csv(const fs::path& file, std::size_t columns) {
   const auto text = read_input(file, kMostResults);
   if (!text) return tl::make_unexpected(text.error());
+  if (!text->starts_with("origin_ns,"))
+    return fail(Errc::bad_config,
+                file.string() + ": the first line does not name the columns: origin_ns, …");
   Table table{columns, {}};
   std::size_t number = 0;
   for (std::string_view rest(*text); !rest.empty();) {
@@ -171,6 +174,10 @@ Result<std::vector<SensorEvent>> read(const fs::path& file, const Layout& layout
                                       const HandOf& hand_of) {
   const auto table = read_table(file, layout.columns());
   if (!table) return tl::make_unexpected(table.error());
+  if (table->rows() == 0)
+    return fail(
+        Errc::bad_config,
+        file.string() + ": it has no rows; where no hand was found, write a row of side -1");
   auto events = messages_of<Message>(*table, hand_of);
   return events ? std::move(events) : fail_in(file.string(), events.error());
 }

@@ -12,7 +12,10 @@
 namespace handcast::simulate {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
+
+const std::string kNames = "origin_ns,arrival_ns,side\n";
 
 class ExchangeTest : public testing::Test {
  protected:
@@ -117,7 +120,7 @@ TEST_F(ExchangeTest, TheTruthIsThatOfTheImages) {
 
 TEST_F(ExchangeTest, RowsWithTheSameTimesAreOneMessageAndThoseWithoutAHandAreEmpty) {
   write("points.csv",
-        "names\n" + row("5,9,0,1", 88, "1") + row("5,9,1,0.5", 88, "1") + row("7,8,-1,0", 88, "0"));
+        kNames + row("5,9,0,1", 88, "1") + row("5,9,1,0.5", 88, "1") + row("7,8,-1,0", 88, "0"));
   const auto events = read_landmarks(file("points.csv"), calib::CameraModel());
   ASSERT_TRUE(events) << events.error().what;
   ASSERT_EQ(events->size(), 2u);
@@ -146,6 +149,17 @@ TEST_F(ExchangeTest, AnArrayOfNumPyIsReadAsATable) {
   EXPECT_EQ(landmarks.hands[0].side, msg::Side::right);
 }
 
+TEST_F(ExchangeTest, ATableWithoutHeadingOrRowsIsNotAMethodThatFindsNothing) {
+  for (const auto& [text, why] :
+       {std::pair{std::string(), "first line"}, std::pair{row("5,9,0,1", 88, "1"), "first line"},
+        std::pair{kNames, "no rows"}}) {
+    write("points.csv", text);
+    const auto events = read_landmarks(file("points.csv"), calib::CameraModel());
+    ASSERT_FALSE(events) << why;
+    EXPECT_THAT(events.error().what, AllOf(HasSubstr("points.csv"), HasSubstr(why)));
+  }
+}
+
 TEST_F(ExchangeTest, WhatNoSensorDeliversIsRefusedWithItsRow) {
   for (const auto& [text, why] :
        {std::pair{row("0,1,0,1", 87, "1"), "columns"}, std::pair{row("0,1,2,1", 88, "1"), "side"},
@@ -153,7 +167,7 @@ TEST_F(ExchangeTest, WhatNoSensorDeliversIsRefusedWithItsRow) {
         std::pair{row("99000000,1,0,1", 88, "1"), "before it was seen"},
         std::pair{row("0,1,0,1", 88, "x"), "line 2"},
         std::pair{row("0,1,0,1", 88, "1") + row("0,1,0,1", 88, "1"), "same side"}}) {
-    write("points.csv", "names\n" + text);
+    write("points.csv", kNames + text);
     const auto events = read_landmarks(file("points.csv"), calib::CameraModel());
     ASSERT_FALSE(events) << why;
     EXPECT_THAT(events.error().what, HasSubstr(why));
