@@ -79,10 +79,13 @@ inline Result<void> check_joint(const Joint& joint, int number) {
 
 inline Result<void> check_point(const Landmark& point, int number) {
   constexpr float kFarthest_px = 10'000;
-  const std::array values{point.x_px, point.y_px, point.sigma_px};
-  if (!are_within(values, kFarthest_px) || point.sigma_px < 0)
+  const std::array place{point.x_px, point.y_px};
+  if (!are_within(place, kFarthest_px))
     return fail(Errc::bad_data,
                 fmt::format("landmark {} is not within {} px of the image", number, kFarthest_px));
+  if (!(point.sigma_px >= 0 && point.sigma_px <= kFarthest_px))
+    return fail(Errc::bad_data,
+                fmt::format("the sigma of landmark {} is not 0 to {} px", number, kFarthest_px));
   if (!(point.confidence >= 0 && point.confidence <= 1))
     return fail(Errc::bad_data, fmt::format("the confidence of landmark {} is not 0 to 1", number));
   return {};

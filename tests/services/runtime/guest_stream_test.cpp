@@ -172,7 +172,7 @@ TEST(GuestLandmarks, PointsThatCannotBeAreNamed) {
   EXPECT_EQ(why([](auto&) {}), "");
   EXPECT_THAT(why([](auto& hand) { hand.points[3].x_px = kNaN; }), HasSubstr("landmark 3"));
   EXPECT_THAT(why([](auto& hand) { hand.points[3].y_px = 1e9f; }), HasSubstr("landmark 3"));
-  EXPECT_THAT(why([](auto& hand) { hand.points[3].sigma_px = -1; }), HasSubstr("landmark 3"));
+  EXPECT_THAT(why([](auto& hand) { hand.points[3].sigma_px = -1; }), HasSubstr("sigma"));
   EXPECT_THAT(why([](auto& hand) { hand.points[3].confidence = 2; }), HasSubstr("confidence"));
   EXPECT_THAT(why([](auto& hand) { hand.presence = kNaN; }), HasSubstr("presence"));
 }
