@@ -156,7 +156,7 @@ class Trial {
   std::optional<MovingHands> hands_;
   content::BothHands both_;  ///< as they are drawn
   std::array<renderer::Texture, 2> cards_;
-  bool uses_cards_ = false;
+  bool uses_cards_ = false, wrote_all_ = true;
   std::optional<content::Chain> chain_;
   renderer::Texture picture_, first_;
   std::vector<double> ms_;  ///< of the pictures
@@ -270,8 +270,8 @@ void Trial::draw_all() {
     if (drew && frame == wanted_.frames / 2 && frame > 0) save("middle");
     tell_(report_);
   }
-  report_["drawn"] = goes_on && report_["pictures"] > 0;
   if (report_["pictures"] > 1) save("last");
+  report_["drawn"] = goes_on && wrote_all_ && report_["pictures"] > 0;
   if (ms_.empty()) return;
   report_["first_ms"] = ms_[0];
   if (ms_.size() > 1) ms_.erase(ms_.begin());
@@ -288,11 +288,12 @@ void Trial::save(std::string_view which) {
 
 void Trial::save(std::string_view which, const renderer::Texture& picture) {
   const auto file = wanted_.folder / fmt::format("{}-{}.png", wanted_.name, which);
-  const auto written = renderer::write_png(file, picture.view());
-  if (written)
+  if (const auto written = renderer::write_png(file, picture.view()); written) {
     report_["files"].push_back(file.string());
-  else
+  } else {
+    wrote_all_ = false;
     note_error(written.error());
+  }
 }
 
 void Trial::try_parameters() {

@@ -93,6 +93,14 @@ TEST_F(TryTest, WhatIsNotThereIsNamedAndTheNextOneGoesOn) {
   EXPECT_THAT(output_, HasSubstr("1 of 3 loaded"));
 }
 
+TEST_F(TryTest, APictureThatCannotBeWrittenIsAFault) {
+  const auto folder = scratch_.path() / "out";
+  fs::create_directories(folder / "builtin_white-first.png");
+  const auto ran = run({"builtin:white", "--frames", "1", "--out", folder.string()});
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_THAT(ran.output, HasSubstr("builtin_white-first.png"));
+}
+
 TEST_F(TryTest, ArgumentsThatMakeNoSenseAreRefused) {
   EXPECT_EQ(run({}).exit_code, 2);
   EXPECT_EQ(run({"builtin:white", "--size", "8"}).exit_code, 2);
