@@ -165,6 +165,9 @@ void GuestProgram::stop(Deadline deadline) {
 Result<void> check_command(const config::External& settings) {
   if (settings.command.empty()) return {};
   const auto& program = settings.command.front();
+  std::error_code absent;
+  if (!settings.folder.empty() && !fs::is_directory(settings.folder, absent))
+    return fail(Errc::bad_config, "there is no folder " + quote(settings.folder));
   const bool has_folder = program.find('/') != std::string::npos;
   bool found = has_folder && is_program(fs::path(settings.folder) / program);
   const char* const path = getenv("PATH");
@@ -176,7 +179,7 @@ Result<void> check_command(const config::External& settings) {
       Errc::bad_config,
       fmt::format("there is no program {}{}", quote(program),
                   has_folder ? " in " + settings.folder
-                             : "; of one in the folder of the rig file, write ./" + program));
+                             : "; one in the folder of the rig file is named with ./ before it"));
 }
 
 }  // namespace handcast::guest

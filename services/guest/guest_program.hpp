@@ -34,7 +34,7 @@ class GuestProgram {
   /// Passes on what it prints until the deadline. Takes at most 12 MB a second: a program that
   /// prints more waits.
   void pass_on_output(Deadline deadline);
-  /// How it ended and its last line: "exit 1 (No module named 'torch')"; empty while it runs.
+  /// How it ended and its last line: "exit 1: No module named 'torch'"; empty while it runs.
   std::optional<std::string> end();
   /// Asks it to end (SIGTERM), and kills it at the deadline.
   void stop(Deadline deadline);
@@ -48,7 +48,7 @@ class GuestProgram {
   OutputLines lines_;
 };
 
-/// Whether the program of a command is there. Errors: bad_config.
+/// Whether the program of a command, and the folder for it, are there. Errors: bad_config.
 Result<void> check_command(const config::External& settings);
 
 }  // namespace handcast::guest

@@ -71,7 +71,8 @@ static service::Instance instance_of(const config::Guest& guest) {
     description.settings.push_back(fmt::format("{}.process.{}", guest.feeds, name));
   return {std::move(description), [guest](service::Context& context) { run_guest(context, guest); },
           [guest](const config::Rig& rig, const calib::Calibration&) {
-            return guest::check_command(guest.settings(rig));
+            const auto fits = guest::check_command(guest.settings(rig));
+            return fits ? fits : fail_in(guest.section(), fits.error());
           }};
 }
 

@@ -60,6 +60,9 @@ TEST_F(GuestProgramTest, OneThatIsNotThereIsASentence) {
   auto elsewhere = shell("exit 0");
   elsewhere.folder = "/no/such/folder";
   EXPECT_THAT(result(elsewhere), HasSubstr("/no/such/folder"));
+  const auto found = check_command(elsewhere);
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().what, HasSubstr("no folder '/no/such/folder'"));
 }
 
 TEST_F(GuestProgramTest, ItRunsInItsFolder) {
