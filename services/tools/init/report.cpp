@@ -47,7 +47,8 @@ std::string controller_of(const Plan& plan) {
 /// The unit of Debian's package runs the rig files of one folder.
 std::string start_command(const std::string& file) {
   const auto whole = std::filesystem::absolute(file);
-  if (whole.parent_path() != "/etc/handcast") return fmt::format("handcast up {}", file);
+  if (whole.parent_path() != "/etc/handcast")
+    return fmt::format("handcast up {}", shell_word(file));
   return fmt::format("sudo systemctl enable --now handcast@{}", whole.stem().string());
 }
 
@@ -62,7 +63,7 @@ std::vector<std::string> steps(const Plan& plan, const std::string& file) {
     steps.push_back(
         "Read \"A DLP projector with a controller\" in docs/operating/light.md before the "
         "first light.");
-  steps.push_back(fmt::format("handcast doctor {}", file));
+  steps.push_back(fmt::format("handcast doctor {}", shell_word(file)));
   steps.push_back(start_command(file));
   return steps;
 }

@@ -235,11 +235,20 @@ std::string observer(const Plan& plan) {
 
 }  // namespace
 
+std::string shell_word(const std::string& file) {
+  constexpr std::string_view kChanged = " \t\n!\"#$&'()*;<=>?[\\]^`{|}~";
+  if (file.find_first_of(kChanged) == file.npos) return file;
+  std::string word = "'";
+  for (const char c : file) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + '\'';
+}
+
 std::string calibrate_command(const Plan& plan, const std::filesystem::path& file) {
   constexpr Size kUnknown{1024, 768};
   const auto size = showing_of(plan).size;
-  return fmt::format("handcast calibrate {} --camera {} --projector {} --apply", file.string(),
-                     text_of(images_of(plan)->size), text_of(size.width_px > 0 ? size : kUnknown));
+  return fmt::format("handcast calibrate {} --camera {} --projector {} --apply",
+                     shell_word(file.string()), text_of(images_of(plan)->size),
+                     text_of(size.width_px > 0 ? size : kUnknown));
 }
 
 Showing showing_of(const Plan& plan) {

@@ -16,6 +16,9 @@ struct Showing {
 };
 Showing showing_of(const Plan& plan);
 
+/// A file as a command names it: in quotes if a shell would split or change it.
+std::string shell_word(const std::string& file);
+
 /// The command that makes the calibration of the plan's devices: "handcast calibrate rig.toml
 /// --camera 640x480 --projector 1280x800".
 std::string calibrate_command(const Plan& plan, const std::filesystem::path& file);

@@ -104,6 +104,15 @@ TEST_F(RigText, ForEveryCombinationOfDevicesIsARigThatTheDoctorPasses) {
       }
 }
 
+TEST_F(RigText, AFileWithASpaceIsOneWordOfTheCommandsThatArePrinted) {
+  const auto plan = plan_of({colour_webcam(), connector("HDMI-A-1", "EPSON PJ")});
+  for (const auto* verb : {"calibrate", "doctor", "up"})
+    EXPECT_THAT(report(plan, "my rig.toml"), HasSubstr(verb + std::string(" 'my rig.toml'")));
+  EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_word("~a"), "'~a'");
+  EXPECT_EQ(shell_word("a-b/ü.toml"), "a-b/ü.toml");
+}
+
 TEST_F(RigText, TheCommandThatIsPrintedMeasuresTheseDevicesAndAppliesTheResult) {
   const auto plan = plan_of({colour_webcam(), connector("HDMI-A-1", "EPSON PJ")});
   const auto command = calibrate_command(plan, "my_rig.toml");
