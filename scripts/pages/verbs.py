@@ -45,7 +45,7 @@ VERBS = {
         "pages.benchmark.write",
         (Option("--landmarks", "Adds a detector: the folder of its results, a file for each case", "FOLDER"),
          Option("--poses", "Adds a tracker: the same", "FOLDER"),
-         Option("--name", "What it is called (default: mine)", "NAME", "mine"),
+         Option("--name", "What it is called (default: mine)", "NAME"),
          Option("--images", "Scores nothing, and writes the images, times and true hands of all cases", "DIR"),
          Option("--out", "Folder for benchmark.json, benchmark.md, benchmark.html and the charts (default: out/benchmark)", "DIR",
                 "out/benchmark"),

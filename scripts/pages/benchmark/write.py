@@ -18,10 +18,12 @@ DONE, SOME_FAILED = 0, 1
 
 
 def number_of(values, key, most):
-    """An option that is a whole number; 0 if it is not given. Raises Problem."""
-    text = getattr(values, key) or "0"
-    if not re.fullmatch(r"\d{1,9}", text) or int(text) > most:
-        raise Problem(f"--{key} {text}: must be a whole number up to {most}")
+    """An option that is a whole number from 1 on; 0 if it is not given. Raises Problem."""
+    text = getattr(values, key)
+    if text is None:
+        return 0
+    if not re.fullmatch(r"\d{1,9}", text) or not 1 <= int(text) <= most:
+        raise Problem(f"--{key} {text}: must be a whole number from 1 to {most}")
     return int(text)
 
 
@@ -30,7 +32,11 @@ def row_of(values):
     given = [part for part in ("landmarks", "poses") if getattr(values, part)]
     if len(given) > 1:
         raise Problem("a row is either of --landmarks or of --poses")
-    return Row(given[0], getattr(values, given[0]), values.name) if given else None
+    if given and values.images:
+        raise Problem(f"--images scores nothing: call it without --{given[0]}")
+    if not given and values.name:
+        raise Problem("--name is that of a row: add --landmarks or --poses")
+    return Row(given[0], getattr(values, given[0]), values.name or "mine") if given else None
 
 
 def sweep(*arguments):
@@ -83,10 +89,10 @@ def run(values, complain):
     """The verb."""
     folder, people = folder_of_plans(values.plans), number_of(values, "people", MOST_PEOPLE)
     jobs = ["-j", str(count)] if (count := number_of(values, "jobs", 4096)) else []
+    row, out = row_of(values), pathlib.Path(values.out).resolve()
     if values.images:
         record(folder, people, pathlib.Path(values.images).resolve(), jobs)
         return DONE
-    row, out = row_of(values), pathlib.Path(values.out).resolve()
     make_folder(out)
     write(score(folder, people, out, row, jobs), out, values.title)
     return DONE

@@ -125,6 +125,10 @@ class TheProgram(Test):
 
     def test_says_what_is_wrong(self):
         for words, why in ((["--people", "many"], "--people many: must be a whole number"),
+                           (["--people", "0"], "--people 0: must be a whole number from 1 to"),
+                           (["--jobs", "0"], "--jobs 0: must be a whole number from 1 to"),
+                           (["--name", "ours"], "add --landmarks or --poses"),
+                           (["--images", "a", "--poses", "b"], "--images scores nothing"),
                            (["--landmarks", "a", "--poses", "b"], "either of --landmarks or of --poses"),
                            (["--landmarks", self.folder], "there is no folder")):
             code, _, errors = self.benchmark(*words)
