@@ -203,6 +203,14 @@ class Hands:
                 yield hands
 
 
+def _both(hands: Mapping[str, Sequence]) -> list:
+    """What is given of the left and of the right hand; None of one that is left out."""
+    for name in hands:
+        if name not in HANDS:
+            raise ValueError(f"there is no hand {name!r}; it is left or right")
+    return [hands.get(name) for name in HANDS]
+
+
 class Pose:
     """The tracker of a rig with pose.backend = "external"."""
 
@@ -216,8 +224,7 @@ class Pose:
         hand that is left out is not seen. `origin_ns`: when the sensor saw them."""
         rig = self._rig
         self._hands.time_ns = origin_ns
-        for side, name in enumerate(HANDS):
-            joints = hands.get(name)
+        for side, joints in enumerate(_both(hands)):
             self._hands.is_there[side] = joints is not None
             if joints is not None:
                 self._joints[side][:] = joints
@@ -237,8 +244,7 @@ class Landmarks:
         confidence (1) and its standard deviation in px (0: unknown). `origin_ns`, `image`: Frame.time_ns, number."""
         rig, found = self._rig, self._found
         found.time_ns, found.image = origin_ns, image
-        for side, name in enumerate(HANDS):
-            points = hands.get(name)
+        for side, points in enumerate(_both(hands)):
             found.presence[side] = points is not None
             if points is not None:
                 points = numpy.asarray(points, numpy.float32)
@@ -307,8 +313,8 @@ def joints_of_points(points_m: Sequence, hand: str) -> "numpy.ndarray":
 
 
 def _rows(hands: Mapping[str, Sequence], shape: tuple, origin_ns: int, arrival_ns: int) -> list:
-    rows = [[origin_ns, arrival_ns, side, 1, *numpy.asarray(hands[name]).ravel()]
-            for side, name in enumerate(HANDS) if hands.get(name) is not None]
+    rows = [[origin_ns, arrival_ns, side, 1, *numpy.asarray(values).ravel()]
+            for side, values in enumerate(_both(hands)) if values is not None]
     return rows or [[origin_ns, arrival_ns, -1, *[0] * (1 + shape[0] * shape[1])]]
 
 
