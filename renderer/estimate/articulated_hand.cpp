@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/estimate/articulated_hand.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
@@ -52,12 +51,11 @@ Flexions flexions_of(const HandJoints& joints) {
   Flexions flexions{};
   for (int finger = 0; finger < kFingers; ++finger) {
     const auto chain = chain_of(finger);
-    const auto bone = [&](int i) {
-      return glm::normalize(joints.at_m[chain[i + 1]] - joints.at_m[chain[i]]);
-    };
+    const auto bone_m = [&](int i) { return joints.at_m[chain[i + 1]] - joints.at_m[chain[i]]; };
     // The angle at the thumb's root is its place on the hand.
     for (int i = finger == 0 ? 1 : 0; i < kBendsOfFinger; ++i)
-      flexions[finger][i] = std::acos(std::clamp(glm::dot(bone(i), bone(i + 1)), -1.0, 1.0));
+      flexions[finger][i] = std::atan2(glm::length(glm::cross(bone_m(i), bone_m(i + 1))),
+                                       glm::dot(bone_m(i), bone_m(i + 1)));  // 0 without a bone
   }
   return flexions;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "renderer/base/joint_math.hpp"
@@ -63,6 +64,14 @@ TEST_P(Articulated, FlexionIsWhatAFingerIsBentBy) {
       const double asked = glm::radians(samples::kFist.fingers[finger - 1][b + 1]);
       EXPECT_NEAR(flexions[finger][b], asked, straight[finger][b] + 0.06) << finger << ' ' << b;
     }
+}
+
+TEST_P(Articulated, JointsAtOnePlaceAreAHandThatIsNotBent) {
+  auto reported = joints(samples::kPinch);
+  reported.at_m.fill({0.1, 0, 0.6});
+  EXPECT_EQ(flexions_of(reported), Flexions{});
+  for (const auto& at_m : ArticulatedHand(reported, drawn_errors()).joints().at_m)
+    EXPECT_TRUE(std::isfinite(at_m.x + at_m.y + at_m.z));
 }
 
 TEST_P(Articulated, APositiveBendFoldsAFinger) {
