@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "config/live/live_board.hpp"
+#include "config/settings/choice.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/quote.hpp"
 #include "services/desk/lamp/pjlink.hpp"
 
 namespace handcast::lamp {
@@ -31,9 +33,16 @@ const char* const kNotes =
 If the rig is up, light.lamp becomes what was asked for.)";
 
 struct Options {
-  std::string what = "status", rig, file;
+  std::optional<Lamp> wanted;  ///< empty: how it is
+  std::string rig, file;
   double wait_s = 120;
 };
+
+Result<void> read_wanted(const std::string& word, Options& options) {
+  options.wanted = config::choice_named<Lamp>(word);
+  if (word == "status" || (options.wanted && *options.wanted != Lamp::unchanged)) return {};
+  return fail(Errc::bad_config, "write on, off, mute or status, not " + quote(word));
+}
 
 int complain(const Error& error) {
   fmt::print(stderr, "handcast lamp: {}\n", printable(error.what));
@@ -81,20 +90,18 @@ int run(const Options& options) {
   }
   const auto place = lamp::place_of(settings);
   if (!place) return complain(place.error());
-  if (options.what == "status") {
+  if (!options.wanted) {
     const auto status = lamp::ask(*place, Deadline::in(kAnswer));
     if (!status) return complain(status.error());
     print_status(*status);
     return status->faults.empty() ? kExitDone : kExitBadResult;
   }
-  const auto wanted = options.what == "on"     ? Lamp::on
-                      : options.what == "mute" ? Lamp::mute
-                                               : Lamp::off;
   // First, as the desk would turn it back.
-  const std::vector<std::string> change{"light.lamp=" + options.what};
+  const std::vector<std::string> change{
+      fmt::format("light.lamp={}", config::word_of(*options.wanted))};
   if (board)
     if (const auto set = board->set(change, "command line"); !set) return complain(set.error());
-  const auto turned = turn(*place, wanted, settings.input,
+  const auto turned = turn(*place, *options.wanted, settings.input,
                            Deadline::at_ns(now_ns() + seconds_to_ns(options.wait_s)));
   return turned ? kExitDone : complain(turned.error());
 }
@@ -109,7 +116,7 @@ static int run_verb(int argc, char** argv) {
                    lamp::kNotes);
   line.add(
       "[on|off|mute|status]",
-      [&](const std::string& word) { return options.what = word, Result<void>(); },
+      [&](const std::string& word) { return lamp::read_wanted(word, options); },
       "What it is told; status: how it is");
   line.add("--rig NAME", options.rig, "Which rig, if several are up");
   line.add("--file RIG.toml", options.file, "The projector of a rig that is not up");
