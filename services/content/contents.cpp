@@ -36,12 +36,13 @@ std::optional<T> given(Result<T> result, const std::function<void(const Error&)>
 
 Contents::Contents(Hands hands, const config::Rig& filed, const calib::Calibration& calibration,
                    Streams streams, const ipc::OpenRing& ring,
-                   std::function<void(const Error&)> tolerate)
+                   std::function<void(const Error&)> tolerate, std::function<void()> beat)
     : filed_(filed),
       hands_(std::move(hands)),
       calibration_(calibration),
       streams_(std::move(streams)),
-      tolerate_(std::move(tolerate)) {
+      tolerate_(std::move(tolerate)),
+      beat_(std::move(beat)) {
   for (const Side side : kSides) {
     auto like = opening_for(side, hands_, filed.content, calibration);
     like.ring = ring;
@@ -101,8 +102,10 @@ void Contents::obey(const service::LiveRig& live) {
   }
   for (auto* worn : begun) worn->announce(worn->content_of_settings());
   if (!begun.empty()) publish_state();
-  for (auto* worn : begun)
+  for (auto* worn : begun) {
     worn->obey({std::string(settings.transition.view()), settings.transition_s});
+    beat_();
+  }
   for (auto& worn : worn_) worn.took(settings.header.frame_id);
 }
 
@@ -145,6 +148,7 @@ void Contents::draw(std::int64_t time_ns) {
       view->other = &seen[1 - i];
     }
     worn_[i].draw(hands[i], hands[1 - i], time_ns, view ? &*view : nullptr);
+    beat_();
   }
 }
 

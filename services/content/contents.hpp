@@ -91,9 +91,11 @@ struct Streams {
 class Contents {
  public:
   /// `filed`: the rig of the file. `calibration` outlives it. `tolerate` gets errors of the rings
-  /// other than timeouts.
+  /// other than timeouts. `beat` is called after each hand, as a new content may take seconds to
+  /// open and to draw first.
   Contents(Hands hands, const config::Rig& filed, const calib::Calibration& calibration,
-           Streams streams, const ipc::OpenRing& ring, std::function<void(const Error&)> tolerate);
+           Streams streams, const ipc::OpenRing& ring, std::function<void(const Error&)> tolerate,
+           std::function<void()> beat);
 
   /// Shows what was asked for last: in the file, or live. `before`: the state that a
   /// process before this one has left. What it died with is refused, and what it showed goes on.
@@ -117,6 +119,7 @@ class Contents {
   const calib::Calibration& calibration_;
   Streams streams_;
   std::function<void(const Error&)> tolerate_;
+  std::function<void()> beat_;
   std::vector<HandContent> worn_;                       ///< left, right
   std::optional<ipc::Sample<msg::CameraFrame>> image_;  ///< the newest, while a content needs it
   std::uint64_t published_ = 0;

@@ -61,9 +61,9 @@ static void run_content(service::Context& context) {
   if (!checked) service::give_up(checked.error());
   context.stand_by();
   const auto before = last_state(context);
-  content::Contents contents(std::move(hands), filed, calibration, streams_of(context),
-                             guests_of(context),
-                             [&](const Error& error) { context.tolerate(error); });
+  content::Contents contents(
+      std::move(hands), filed, calibration, streams_of(context), guests_of(context),
+      [&](const Error& error) { context.tolerate(error); }, [&] { (void)context.running(); });
   contents.start(before);
   context.ready();
   const auto period_ns = seconds_to_ns(1 / filed.content.rate_hz);

@@ -32,7 +32,7 @@ ipc::Writer<T> writer(const ipc::Segment& segment) {
 /// The contents of two hands between rings of their own.
 class ContentsTest : public testing::Test {
  protected:
-  Contents contents() const {
+  Contents contents() {
     return {hands(),
             filed(),
             calibration_,
@@ -42,7 +42,8 @@ class ContentsTest : public testing::Test {
              .states = writer<msg::ContentState>(states_),
              .pictures = {writer<msg::ContentPicture>(left_), writer<msg::ContentPicture>(right_)}},
             {},
-            [](const Error& error) { ADD_FAILURE() << error.what; }};
+            [](const Error& error) { ADD_FAILURE() << error.what; },
+            [this] { ++beats_; }};
   }
   static Hands hands() { return *Hands::load(*config::parse_rig("", ""), calib::reference_rig()); }
   config::Rig filed() const {
@@ -65,6 +66,7 @@ class ContentsTest : public testing::Test {
     return last_;
   }
 
+  int beats_ = 0;
   config::Content settings_ = [] {
     config::Content settings;
     settings.width_px = settings.height_px = 128;
@@ -110,6 +112,16 @@ TEST_F(ContentsTest, WhatIsBegunIsToldBeforeAndTriedUntilItHasDrawn) {
   contents.publish_state();
   EXPECT_EQ(left().trying.view(), "");
   EXPECT_EQ(left().content.view(), "builtin:checker");
+}
+
+TEST_F(ContentsTest, ItGivesASignOfLifeAfterEachHandThatTakesItsTime) {
+  auto contents = this->contents();
+  contents.start({});
+  ask(1, {"content.left=builtin:checker", "content.right=builtin:joints"});
+  contents.obey_until(now_ns());
+  EXPECT_EQ(beats_, 2);
+  contents.draw(now_ns());
+  EXPECT_EQ(beats_, 4);
 }
 
 TEST_F(ContentsTest, WhatAProcessDiedWithIsRefusedUntilItIsAskedForAgainAndItsContentGoesOn) {
