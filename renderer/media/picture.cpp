@@ -113,7 +113,7 @@ struct PngFile {
 };
 
 tl::unexpected<Error> broken(const std::filesystem::path& file) {
-  return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture.", file.string()));
+  return fail(Errc::bad_config, fmt::format("'{}' is not a PNG picture", file.string()));
 }
 
 void say_unknown_colours(const std::filesystem::path& file, std::string_view what,
@@ -235,7 +235,7 @@ int orientation_of_jpeg(std::string_view jpeg) {
 Result<Texture> read_jpeg(std::string_view bytes, const std::filesystem::path& file) {
   auto picture = decode_jpeg(bytes);
   if (!picture)
-    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), picture.error().what));
+    return fail(Errc::bad_config, fmt::format("'{}' {}", file.string(), picture.error().what));
   const auto is_grey = [](std::uint32_t rgba) {
     return (rgba & 255) == (rgba >> 8 & 255) && (rgba & 255) == (rgba >> 16 & 255);
   };
@@ -252,7 +252,7 @@ std::uint32_t luma_of(std::uint32_t red, std::uint32_t green, std::uint32_t blue
 Result<GreyPicture> read_grey_jpeg(std::string_view bytes, const std::filesystem::path& file) {
   const auto picture = decode_jpeg(bytes);
   if (!picture)
-    return fail(Errc::bad_config, fmt::format("'{}' {}.", file.string(), picture.error().what));
+    return fail(Errc::bad_config, fmt::format("'{}' {}", file.string(), picture.error().what));
   Image<std::uint8_t> grey(picture->width(), picture->height());
   std::ranges::transform(picture->pixels(), grey.pixels().begin(), [](std::uint32_t rgba) {
     return static_cast<std::uint8_t>(luma_of(rgba & 255, rgba >> 8 & 255, rgba >> 16 & 255));

@@ -193,6 +193,7 @@ int run_preset(const Arguments& arguments) {
   line.add("--store", store, "Makes the preset NAME of the present settings");
   add_rig(line, rig);
   if (const auto code = line.answered(arguments)) return *code;
+  if (store && name.empty()) return complain(kExitUsage, "preset: --store needs a NAME");
   return with_board(rig, [&](LiveBoard& board) -> Result<void> {
     if (store) return board.store(name);
     if (!name.empty()) return board.load(name, kSource).map([](auto) {});

@@ -151,6 +151,7 @@ TEST_F(RigWithDesk, BlackoutAndMasterAreOneWord) {
   EXPECT_THAT(changed(), HasSubstr("light.master = 0.5"));
   EXPECT_THAT(changed(), Not(HasSubstr("blackout")));
   EXPECT_THAT(handcast({"freeze", "maybe"}).log, HasSubstr("write on or off"));
+  EXPECT_THAT(handcast({"preset", "--store"}).log, HasSubstr("--store needs a NAME"));
 }
 
 }  // namespace

@@ -27,10 +27,10 @@ constexpr char kNotes[] =
     R"(Start it beside a rig that is up. The hand shows a pose as a drawing; hold your hand so until each bone is green. Times and
 the range of motion of each joint are in DIR/pose-NN.csv.
 
-  handcast study pose DIR --person 1                    nine poses
+  handcast study pose DIR --person 1                     nine poses
   handcast study pose --teach "letter L" --poses my.csv  adds the pose that is held still for 3 s
-  handcast study pose DIR --person 1 --poses my.csv     plays these
-  handcast study pose --report DIR --pdf FILE           times and range of motion over the sessions, to print)";
+  handcast study pose DIR --person 1 --poses my.csv      plays these
+  handcast study pose --report DIR --pdf FILE            times and range of motion over the sessions, to print)";
 
 struct Options {
   std::string folder = "poses", rig, poses_file, taught, page_folder, pdf_file;
