@@ -62,14 +62,18 @@ def chart_of(rows, planned):
     return Chart("benchmark", f"Benchmark {VERSION}", READING, tables=[table])
 
 
+def text_of(figure, digits):
+    """A figure for people; a dash for one that no run has."""
+    return "–" if figure is None else f"{figure:.{digits}f}"
+
+
 def markdown(rows):
     """The same as a table for a README."""
     yield "| method | error of the light, mean / p95 mm | ratio | worse in (cases) |"
     yield "|---|---|---|---|"
     for row in rows:
-        ratio = "" if row["ratio"] is None else f"{row['ratio']:.2f}"
-        yield (f"| {method_of(row['name']).label} | {row['mean_mm']:.1f} / {row['p95_mm']:.1f} | {ratio} | "
-               f"{row['worse']} of {row['compared']} |")
+        yield (f"| {method_of(row['name']).label} | {text_of(row['mean_mm'], 1)} / {text_of(row['p95_mm'], 1)} | "
+               f"{text_of(row['ratio'], 2)} | {row['worse']} of {row['compared']} |")
 
 
 def as_json(rows, planned, facts):

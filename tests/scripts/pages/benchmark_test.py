@@ -90,6 +90,12 @@ class TheTable(Test):
         self.assertIn("| mine | 6.7 / 10.0 | 0.83 | 1 of 3 |", list(markdown([paper, mine])))
 
 
+    def test_has_a_dash_for_what_no_run_has(self):
+        file = write_sweep(self.folder, "benchmark", "twin.motion,twin.seed,interior_mm_mean,interior_mm_p95",
+                           ["paper_at_our_speed,builtin:wave,101,4,9,", "dark,builtin:wave,101,,,"])
+        self.assertIn("| dark | – / – | – | 0 of 0 |", list(markdown(rows_of(read_results([file])))))
+
+
 class TheProgram(Test):
     def setUp(self):
         super().setUp()
