@@ -40,7 +40,7 @@ wait_for_installation() {
 for_sed() { printf '%s' "$1" | sed 's/[&#\\]/\\&/g'; }
 
 # need_value "$@": checks that the option $1 is followed by a value.
-need_value() { [ $# -ge 2 ] || die "$1 needs a value; see --help"; }
+need_value() { [ -n "${2-}" ] || die "$1 needs a value; see --help"; }
 
 # split_values "$@": puts the arguments into the array words, "--name=value" as two of them, up to "--".
 split_values() {

@@ -13,6 +13,10 @@ expect "'--seconds' '2'" --seconds=2
 expect "'--out' 'a b' 'x=y'" "--out=a b" x=y
 expect "'--a' 'b=c' '--' '--d=e'" --a=b=c -- --d=e
 expect ""
+need_value --out dir
+for words in --out "--out="; do
+  [[ $(scripts/package "$words" 2>&1) == *"--out needs a value"* ]] || { echo "scripts/package $words: not refused"; exit 1; }
+done
 for script in demo bench package results get-models train-landmarks; do
   [[ $("scripts/$script" -h) == "scripts/$script"* ]] || { echo "scripts/$script -h: no help"; exit 1; }
 done
