@@ -29,10 +29,9 @@ constexpr Guest guest_of(std::string_view service, std::string_view feeds) {
           [](const Rig& rig) -> const External& { return (rig.*kSection).external; },
           [](const Rig& rig) {
             const auto& section = rig.*kSection;
-            bool is_heard = section.backend == "external";
             if constexpr (requires { section.second; })
-              is_heard = is_heard || section.second == "external";
-            return is_heard;
+              if (section.second == "external") return true;
+            return section.backend == "external";
           }};
 }
 

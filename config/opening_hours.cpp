@@ -25,9 +25,8 @@ std::string_view take_part(std::string_view& text, std::string_view separator) {
 }
 
 std::string_view trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(" \t");
-  if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+  return text.substr(0, text.find_last_not_of(" \t") + 1);
 }
 
 /// A number of this many digits from 0 to `most`.
@@ -174,15 +173,6 @@ bool OpeningHours::is_open(std::time_t time) const {
         ranges, [&](const Range& range) { return at >= range.begin && at < range.end; });
   };
   return covers(ranges_on(today), minute) || covers(ranges_on(yesterday), minute + kDay_min);
-}
-
-std::optional<std::time_t> OpeningHours::next_change(std::time_t time) const {
-  constexpr int kMost_min = 35 * kDay_min;
-  const bool now = is_open(time);
-  auto minute = time - time % 60;
-  for (int i = 0; i < kMost_min; ++i)
-    if (is_open(minute += 60) != now) return minute;
-  return std::nullopt;
 }
 
 }  // namespace handcast::config

@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <ctime>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,8 +23,6 @@ class OpeningHours {
   bool is_always_open() const { return !has_days_ && dated_.empty(); }
   /// Whether it is open at a time.
   bool is_open(std::time_t time) const;
-  /// The next minute at which it opens or closes; empty if there is none within five weeks.
-  std::optional<std::time_t> next_change(std::time_t time) const;
 
  private:
   /// Minutes since the begin of the day; `end` may be on the next one.

@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <sstream>
 #include <vector>
@@ -21,6 +20,7 @@
 #include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
+#include "ipc/base/wait_status.hpp"
 #include "ipc/daemon/contract.hpp"
 
 namespace handcast::guest {
@@ -84,11 +84,6 @@ void add_python_folder() {
 /// ring, to which the next program then could not send.
 void kill_group(pid_t pid) { kill(-pid, SIGKILL); }
 
-std::string describe(int status) {
-  if (WIFEXITED(status)) return fmt::format("exit {}", WEXITSTATUS(status));
-  return fmt::format("signal {}, {}", WTERMSIG(status), strsignal(WTERMSIG(status)));
-}
-
 bool is_program(const fs::path& file) {
   std::error_code absent;
   return fs::is_regular_file(file, absent) && access(file.c_str(), X_OK) == 0;
@@ -150,7 +145,8 @@ std::optional<std::string> GuestProgram::end() {
   read_some();
   lines_.finish(now_ns());
   const auto last = lines_.last();
-  return last.empty() ? describe(status) : fmt::format("{}: {}", describe(status), printable(last));
+  return last.empty() ? describe_end(status)
+                      : fmt::format("{}: {}", describe_end(status), printable(last));
 }
 
 void GuestProgram::stop(Deadline deadline) {

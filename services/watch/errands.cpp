@@ -18,6 +18,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
+#include "ipc/base/wait_status.hpp"
 
 namespace handcast::watch {
 namespace {
@@ -68,11 +69,6 @@ struct Plan {
 std::string last_line(std::string_view text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
   return printable(text.substr(text.find_last_of('\n') + 1));
-}
-
-std::string describe(int status) {
-  if (WIFEXITED(status)) return fmt::format("exit {}", WEXITSTATUS(status));
-  return fmt::format("signal {}, {}", WTERMSIG(status), strsignal(WTERMSIG(status)));
 }
 
 }  // namespace
@@ -131,7 +127,8 @@ bool Errands::has_ended(std::int64_t now_ns) {
     read_output();
     const auto said = last_line(printed_);
     if (status != 0)
-      fail_with(fmt::format("ended with {}{}{}", describe(status), said.empty() ? "" : ": ", said));
+      fail_with(
+          fmt::format("ended with {}{}{}", describe_end(status), said.empty() ? "" : ": ", said));
     return true;
   }
   if (now_ns < ends_ns_) return false;

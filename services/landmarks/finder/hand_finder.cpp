@@ -178,9 +178,8 @@ void HandFinder::drop_duplicate(const Hints& hints_px) {
   const auto& second = hints_px[index_of(found_[1].side)];
   const bool both_are_known = is_usable(first) && is_usable(second);
   if (!are_one_hand(a_px, b_px) && (both_are_known || !have_one_palm(a_px, b_px))) return;
-  bool keep_first =
-      sigma_of(found_[0]) < sigma_of(found_[1]) ||
-      (sigma_of(found_[0]) == sigma_of(found_[1]) && found_[0].presence >= found_[1].presence);
+  const auto doubt = [](const auto& hand) { return std::pair(sigma_of(hand), -hand.presence); };
+  bool keep_first = doubt(found_[0]) <= doubt(found_[1]);
   if (found_[0].before_px && found_[1].before_px)
     keep_first = distance_px(*found_[0].before_px, found_[0].points_px) <=
                  distance_px(*found_[1].before_px, found_[1].points_px);
@@ -281,12 +280,10 @@ Result<void> HandFinder::examine_either_side(renderer::GreyView image, const Reg
       if (auto examined = examine(image, {side, seen, std::nullopt}); !examined) return examined;
     if (found_.size() < before + 2) return {};
     const float left = sigma_of(found_[before]), right = sigma_of(found_[before + 1]);
-    if (i < kMostRegions && std::max(left, right) < kClear * std::min(left, right)) {
-      seen = model_.landmarks->region_around(found_[before + (left <= right ? 0 : 1)].points_px);
-      continue;
-    }
     found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(before + (left <= right ? 1 : 0)));
-    return {};
+    const bool is_clear = std::max(left, right) >= kClear * std::min(left, right);
+    if (is_clear || i == kMostRegions) return {};
+    seen = model_.landmarks->region_around(found_.back().points_px);
   }
 }
 

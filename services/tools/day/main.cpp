@@ -8,7 +8,6 @@
 #include "config/live/live_board.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/exit_code.hpp"
-#include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
 #include "ipc/base/quote.hpp"
