@@ -70,7 +70,8 @@ TEST_P(Articulated, JointsAtOnePlaceAreAHandThatIsNotBent) {
   auto reported = joints(samples::kPinch);
   reported.at_m.fill({0.1, 0, 0.6});
   EXPECT_EQ(flexions_of(reported), Flexions{});
-  for (const auto& at_m : ArticulatedHand(reported, drawn_errors()).joints().at_m)
+  const ArticulatedHand hand(reported, drawn_errors());
+  for (const auto& at_m : hand.joints().at_m)
     EXPECT_TRUE(std::isfinite(at_m.x + at_m.y + at_m.z));
 }
 
