@@ -71,8 +71,7 @@ TEST_P(Articulated, JointsAtOnePlaceAreAHandThatIsNotBent) {
   reported.at_m.fill({0.1, 0, 0.6});
   EXPECT_EQ(flexions_of(reported), Flexions{});
   const ArticulatedHand hand(reported, drawn_errors());
-  for (const auto& at_m : hand.joints().at_m)
-    EXPECT_TRUE(std::isfinite(at_m.x + at_m.y + at_m.z));
+  for (const auto& at_m : hand.joints().at_m) EXPECT_TRUE(std::isfinite(at_m.x + at_m.y + at_m.z));
 }
 
 TEST_P(Articulated, APositiveBendFoldsAFinger) {
