@@ -25,6 +25,10 @@ std::int64_t silence_of(const worker::Ready& ready, std::optional<std::int64_t> 
   return now_ns - std::max(last_sign_ns.value_or(0), ready.quiet_from_ns);
 }
 
+std::int64_t suspicious_ns(const Rules& rules) {
+  return std::min(rules.silent_ns / 8, kLeastSilence_ns);
+}
+
 /// How long a worker that does this may be silent.
 std::int64_t longest_silence_ns(Activity activity, const Rules& rules) {
   const auto part_ns = [&](double part) {
@@ -46,8 +50,7 @@ const char* doing(Activity activity) {
 bool is_suspicious(const ServiceState& state, std::optional<std::int64_t> last_sign_ns,
                    std::int64_t now_ns, const Rules& rules) {
   const auto* ready = std::get_if<worker::Ready>(&state.worker);
-  return ready && silence_of(*ready, last_sign_ns, now_ns) >=
-                      std::min(rules.silent_ns / 8, kLeastSilence_ns);
+  return ready && silence_of(*ready, last_sign_ns, now_ns) >= suspicious_ns(rules);
 }
 
 Step next(ServiceState state, const Event& event, std::int64_t now_ns, const Rules& rules) {
@@ -273,15 +276,18 @@ void Transition::tick(const worker::AwaitingMessage& awaiting, const event::Tick
 /// The watchdog: see next.hpp.
 void Transition::tick(worker::Ready ready, const event::Tick& event) {
   const bool inert = event.activity == Activity::stopped || event.activity == Activity::asleep;
-  ready.inert_from_ns = inert ? std::optional(ready.inert_from_ns.value_or(now_)) : std::nullopt;
-  worker_ = ready;
   const auto silence_ns = silence_of(ready, event.last_sign_ns, now_);
+  ready.inert_from_ns = inert ? std::optional(ready.inert_from_ns.value_or(now_)) : std::nullopt;
+  ready.held_up_ns = silence_ns < suspicious_ns(rules_) ? 0 : ready.held_up_ns + event.held_up_ns;
+  worker_ = ready;
   const auto limit_ns = longest_silence_ns(event.activity, rules_);
   if (silence_ns < limit_ns) return;
   const auto inert_ns = static_cast<double>(limit_ns) * kInertPart;
   const bool is_hung =
       ready.inert_from_ns && static_cast<double>(now_ - *ready.inert_from_ns) >= inert_ns;
-  if (silence_ns < rules_.silent_ns && !is_hung) return;
+  const auto excused_ns =
+      std::clamp<std::int64_t>(rules_.ready_ns - rules_.silent_ns, 0, ready.held_up_ns);
+  if (silence_ns - excused_ns < rules_.silent_ns && !is_hung) return;
   kill_worker(fmt::format("{} has given no sign of life for {:.1f} s{}; killed", rules_.name,
                           ns_to_seconds(silence_ns), doing(event.activity)));
 }

@@ -89,6 +89,7 @@ struct Tick {
   /// The time of the worker's last frame or heartbeat; empty if there was none.
   std::optional<std::int64_t> last_sign_ns{};
   Activity activity = Activity::unknown;  ///< what the worker did since the last tick
+  std::int64_t held_up_ns = 0;            ///< how long it could not work since then
 };
 
 }  // namespace event
@@ -159,10 +160,10 @@ struct Rules {
   bool wants_standby = false;  ///< a standby is kept
 };
 
-// The watchdog: a worker that has been silent for silent_ns is killed whatever it does, because it
+// The watchdog: a worker that has been silent for silent_ns is killed even if it works, because it
 // may be in an endless loop. A quarter of this time is enough if all its threads are stopped, half
-// of it if all of them sleep without ever asking for a processor. One that works, or waits for a
-// processor on a loaded machine, is given the whole time.
+// of it if all of them sleep without ever asking for a processor. The time in which it waits for a
+// processor on a loaded machine, or for a cold disk, does not count, until ready_ns have passed.
 
 /// The parts of silent_ns, and the least of them: three times the longest pause between heartbeats.
 /// @{

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -19,12 +20,14 @@ char state_in(const std::filesystem::path& thread) {
   return state.empty() ? '\0' : state.front();
 }
 
-/// The sum of the three counters of schedstat: ns on a processor, ns of waiting, number of slices.
-std::uint64_t progress_in(const std::filesystem::path& thread) {
+/// Adds the three counters of schedstat: ns on a processor, ns of waiting, number of slices.
+void add_progress(const std::filesystem::path& thread, ProcessLook& look) {
   std::ifstream file(thread / "schedstat");
-  std::uint64_t sum = 0, counter = 0;
-  while (file >> counter) sum += counter;
-  return sum;
+  std::uint64_t worked_ns = 0, waited_ns = 0, slices = 0;
+  if (!(file >> worked_ns >> waited_ns >> slices)) return;
+  look.progress += worked_ns + waited_ns + slices;
+  look.worked_ns += static_cast<std::int64_t>(worked_ns);
+  look.waited_ns += static_cast<std::int64_t>(waited_ns);
 }
 
 }  // namespace
@@ -40,7 +43,8 @@ std::optional<ProcessLook> look_at_process(pid_t pid) {
     ++look.threads;
     look.all_stopped = look.all_stopped && (state == 'T' || state == 't');
     look.all_asleep = look.all_asleep && state == 'S';
-    look.progress += progress_in(thread->path());
+    look.on_disk = look.on_disk || state == 'D';
+    add_progress(thread->path(), look);
   }
   if (error || look.threads == 0) return std::nullopt;
   return look;
@@ -53,6 +57,15 @@ Activity activity_between(const std::optional<ProcessLook>& before,
   if (now->progress == 0) return Activity::unknown;
   const bool idle = before->threads == now->threads && before->progress == now->progress;
   return idle && before->all_asleep && now->all_asleep ? Activity::asleep : Activity::busy;
+}
+
+std::int64_t held_up_ns(const std::optional<ProcessLook>& before,
+                        const std::optional<ProcessLook>& now, std::int64_t between_ns) {
+  if (activity_between(before, now) != Activity::busy) return 0;
+  const auto idle_ns = between_ns - (now->worked_ns - before->worked_ns);
+  const auto waited_ns = now->waited_ns - before->waited_ns;
+  return std::clamp<std::int64_t>(now->on_disk ? idle_ns : waited_ns, 0,
+                                  std::max<std::int64_t>(idle_ns, 0));
 }
 
 }  // namespace handcast::supervisor

@@ -24,6 +24,9 @@ struct ProcessLook {
   /// Sum over all threads of the time on a processor (ns), the time of waiting for one (ns), and
   /// the number of times it got one. 0 if the system does not count them.
   std::uint64_t progress = 0;
+  std::int64_t worked_ns = 0;  ///< of `progress`, the time on a processor
+  std::int64_t waited_ns = 0;  ///< of `progress`, the time of waiting for one
+  bool on_disk = false;        ///< a thread waits for the kernel: for a disk, or for memory
 };
 
 /// Looks at a process; empty if there is none. Takes about 20 us per thread.
@@ -32,5 +35,10 @@ std::optional<ProcessLook> look_at_process(pid_t pid);
 /// What the process did between two looks.
 Activity activity_between(const std::optional<ProcessLook>& before,
                           const std::optional<ProcessLook>& now);
+
+/// For how much of the time between two looks a process could not work: its threads waited for a
+/// processor, or one for the disk. 0 if nothing is known.
+std::int64_t held_up_ns(const std::optional<ProcessLook>& before,
+                        const std::optional<ProcessLook>& now, std::int64_t between_ns);
 
 }  // namespace handcast::supervisor

@@ -242,19 +242,21 @@ void Service::update(ServiceSpec spec) {
 void Service::tick(std::int64_t now, const Look& look) {
   if (worker_) worker_->check_end();
   if (standby_) standby_->check_end();
-  handle(event::Tick{.published = has_published(),
-                     .needs_are_ready = look.needs_are_ready,
-                     .last_sign_ns = look.last_sign_ns,
-                     .activity = observe(now, look)},
-         now);
+  event::Tick tick{.published = has_published(),
+                   .needs_are_ready = look.needs_are_ready,
+                   .last_sign_ns = look.last_sign_ns};
+  observe(now, look, tick);
+  handle(tick, now);
 }
 
-/// What a silent worker did since the last tick.
-Activity Service::observe(std::int64_t now, const Look& look) {
+/// Adds what a silent worker did since the last tick.
+void Service::observe(std::int64_t now, const Look& look, event::Tick& tick) {
   const auto before = std::exchange(look_, {});
-  if (!worker_ || !is_suspicious(state_, look.last_sign_ns, now, rules())) return Activity::unknown;
+  const auto before_ns = std::exchange(looked_ns_, now);
+  if (!worker_ || !is_suspicious(state_, look.last_sign_ns, now, rules())) return;
   look_ = launch_.look_at(worker_->pid());
-  return activity_between(before, look_);
+  tick.activity = activity_between(before, look_);
+  tick.held_up_ns = held_up_ns(before, look_, now - before_ns);
 }
 
 SavedService Service::saved() const {

@@ -180,7 +180,7 @@ class Service {
   void watch_worker(Child child);
   void watch_standby(Child child, LogTail& log);
   void take_wanted();
-  Activity observe(std::int64_t now_ns, const Look& look);
+  void observe(std::int64_t now_ns, const Look& look, event::Tick& tick);
   void worker_ended(Exit exit);
   void standby_ended(Exit exit);
   bool has_published() const;
@@ -196,6 +196,7 @@ class Service {
   std::optional<Settings> wanted_;  ///< the settings of the replacement, if there is one
   std::string replacement_problem_;
   std::optional<ProcessLook> look_;  ///< the last look at a silent worker
+  std::int64_t looked_ns_ = 0;       ///< when that was
 
   LogTail log_, standby_log_;
   std::unique_ptr<WatchedChild> worker_, standby_;

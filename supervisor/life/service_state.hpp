@@ -55,6 +55,7 @@ struct Ready {
   std::int64_t quiet_from_ns = 0;  ///< silence before this time does not count
   /// Since when each tick found it stopped or asleep; empty: the last one did not, or did not look.
   std::optional<std::int64_t> inert_from_ns{};
+  std::int64_t held_up_ns = 0;  ///< how much of the silence it could not work
 };
 /// The process was killed because it was late or silent, and has not ended yet.
 struct Killed {

@@ -275,6 +275,20 @@ TEST(Next, AWorkerThatIsSeenAtWorkOnceInItsSilenceGetsTheWholeTime) {
               ElementsAre("warn: pose has given no sign of life for 2.0 s; killed", "kill"));
 }
 
+TEST(Next, TimeWithoutAProcessorIsNoSilenceUntilReadyS) {
+  Machine machine{.state = {.worker = kReady}};
+  const auto wait = [&](double time_s, double held_up_s) {
+    return machine.at(time_s, event::Tick{.activity = Activity::busy, .held_up_ns = s(held_up_s)});
+  };
+  EXPECT_THAT(wait(97.5, 1.5), IsEmpty()) << "it had a processor for 1 s of 2.5";
+  EXPECT_THAT(wait(98.4, 0), IsEmpty());
+  EXPECT_THAT(wait(98.5, 0), ElementsAre(HasSubstr("no sign of life for 3.5 s"), "kill"));
+
+  machine.state = {.worker = kReady};
+  EXPECT_THAT(wait(104.9, 9.9), IsEmpty());
+  EXPECT_THAT(wait(105, 0.1), ElementsAre(HasSubstr("no sign of life for 10.0 s"), "kill"));
+}
+
 TEST(Next, OneLookIsNotEnoughToCallAWorkerHung) {
   Machine machine{.state = {.worker = kReady}};
   EXPECT_THAT(machine.at(96.5, event::Tick{.activity = Activity::stopped}), IsEmpty())

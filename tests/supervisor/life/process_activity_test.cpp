@@ -99,5 +99,20 @@ TEST(ProcessActivity, OneThatWaitedForAProcessorOrForTheDiskIsNotAsleep) {
   EXPECT_EQ(activity_between(before, later), Activity::busy);
 }
 
+TEST(ProcessActivity, WaitingForAProcessorOrForTheDiskHoldsAProcessUp) {
+  const ProcessLook before{.threads = 1, .progress = 7, .worked_ns = 100, .waited_ns = 40};
+  auto later = before;
+  later.progress = 8;
+  EXPECT_EQ(held_up_ns(before, later, 50), 0) << "it woke up, and slept again";
+  later.worked_ns = 120;
+  later.waited_ns = 65;
+  EXPECT_EQ(held_up_ns(before, later, 50), 25);
+  later.on_disk = true;
+  EXPECT_EQ(held_up_ns(before, later, 50), 30) << "all the time in which it did not work";
+  later.worked_ns = 190;
+  EXPECT_EQ(held_up_ns(before, later, 50), 0) << "two threads worked";
+  EXPECT_EQ(held_up_ns({}, later, 50), 0);
+}
+
 }  // namespace
 }  // namespace handcast::supervisor

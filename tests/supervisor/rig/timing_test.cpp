@@ -38,7 +38,9 @@ class Timing : public testing::Test {
     return {.threads = 1,
             .all_stopped = seems_ == Activity::stopped,
             .all_asleep = seems_ == Activity::asleep,
-            .progress = slices_};
+            .progress = slices_,
+            .worked_ns = has_processor_ ? clock_ns_ : 0,
+            .waited_ns = has_processor_ ? 0 : clock_ns_};
   }
   Service& service(const std::string& script) {
     const auto program = scratch_.path() / "handcast-pose";
@@ -87,6 +89,7 @@ class Timing : public testing::Test {
   std::int64_t clock_ns_ = now_ns();
   Activity seems_ = Activity::busy;
   std::uint64_t slices_ = 1;
+  bool has_processor_ = true;
   EventLoop loop_ = EventLoop::open().value();
   LiveRig rig_{timed_desk(), loop_, [](Service&, Notice) {}};
 };
@@ -95,6 +98,11 @@ constexpr double kStep_s = 0.011;  // of the ticks
 
 TEST_F(Timing, ASilentWorkerIsKilledAfterSilentS) {
   EXPECT_NEAR(killed_after_s(Activity::busy), 2, kStep_s);
+}
+
+TEST_F(Timing, TimeWithoutAProcessorDoesNotCountUntilReadyS) {
+  has_processor_ = false;
+  EXPECT_NEAR(killed_after_s(Activity::busy), 10, kStep_s);
 }
 
 TEST_F(Timing, AStoppedWorkerIsKilledAfterAQuarterOfSilentS) {
