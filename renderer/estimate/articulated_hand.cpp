@@ -94,22 +94,20 @@ void ArticulatedHand::bend(int finger, const HandErrors& errors) {
   }
 }
 
-/// Turns, scales and shifts the hand about its wrist.
+/// Turns, scales and shifts the hand about its wrist, then each joint.
 void ArticulatedHand::place(const HandErrors& errors) {
   const glm::dmat3 turn = rotation_by(vector_at(errors, error::kTurn));
-  const glm::dvec3 palm_m = vector_at(errors, error::drift_of(-1));
   whole_ = std::exp(errors[error::kSize]) * turn;
   wrist_m_ = reported_.at_m[kWristOfHand];
-  shifted_m_ = wrist_m_ + vector_at(errors, error::kShift) + palm_m;
+  shifted_m_ = wrist_m_ + vector_at(errors, error::kShift);
   bent_m_ = joints_.at_m;
   for (std::size_t j = 0; j < joints_.at_m.size(); ++j) {
     joints_.at_m[j] = shifted_m_ + whole_ * (bent_m_[j] - wrist_m_);
     joints_.axes[j] = turn * joints_.axes[j];
   }
-  for (int finger = 0; finger < kFingers; ++finger) {
-    const auto chain = chain_of(finger);
-    for (std::size_t i = finger == 0 ? 1 : 0; i < chain.size(); ++i)
-      joints_.at_m[chain[i]] += vector_at(errors, error::drift_of(finger)) - palm_m;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const auto drift = error::drift_of(landmark);
+    joints_.at_m[joint_of_landmark(landmark)] += glm::dvec3(errors[drift], errors[drift + 1], 0);
   }
 }
 

@@ -90,7 +90,8 @@ void ArticulatedHand::derivatives(int landmark, const AddVector& add_vector,
   add_vector(error::kShift, glm::dmat3(1));
   add_vector(error::kTurn, -cross_matrix(from_wrist));
   add_number(error::kSize, from_wrist);
-  add_vector(error::drift_of(finger), glm::dmat3(1));
+  add_number(error::drift_of(landmark), glm::dvec3(1, 0, 0));
+  add_number(error::drift_of(landmark) + 1, glm::dvec3(0, 1, 0));
   add_vector(error::place_of(landmark), whole_ * reported_.axes[joint]);
   if (finger < 0) return;
   const auto knuckle = joint_of_landmark(first_landmark(finger));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto kErrors = static_cast<Eigen::Index>(error::kCount);
 constexpr Eigen::Index kNumbers = 2 * kLandmarks;  ///< of a detection
-constexpr double kNotSeen_px = 1e4, kFirstSigma_px = 3;
+constexpr double kNotSeen_px = 1e4;
 
 constexpr double square(double x) { return x * x; }
 constexpr Eigen::Index index(std::size_t error) { return static_cast<Eigen::Index>(error); }
@@ -36,7 +36,7 @@ ErrorFilter::ErrorFilter()
 void ErrorFilter::begin() {
   errors_.fill(0);
   covariance_.setZero();
-  sigma_px_.fill(kFirstSigma_px);
+  sigma_px_.fill(kUnknownSigma_px);
   for_priors([this](const ErrorPrior& prior) { set_variance(prior); });
   for (int finger = 0; finger < kFingers; ++finger) add_bends(finger, 1);
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
@@ -183,11 +183,13 @@ bool ErrorFilter::free_fingers(const AbruptLandmarks& abrupt) {
       ++far[finger_of_landmark(landmark)];
   bool any = false;
   for (int finger = 0; finger < kFingers; ++finger) {
-    if (far[finger] < 2) continue;
+    if (far[finger] < 3) continue;
     any = true;
     add_bends(finger, square(kFreedBend_rad / kSharedBend_rad));
     covariance_.diagonal()[index(error::spread_of(finger))] += square(kFreedSpread_rad);
-    covariance_.diagonal().segment<3>(index(error::drift_of(finger))).array() += square(kFreed_m);
+    covariance_.diagonal()
+        .segment<2 * kLandmarksOfFinger>(index(error::drift_of(first_landmark(finger))))
+        .array() += square(kFreed_m);
   }
   return any;
 }
@@ -198,18 +200,24 @@ bool ErrorFilter::end_errors(AbruptLandmarks& abrupt) {
   bool any = false;
   for (int landmark = 0; landmark < kLandmarks; ++landmark) {
     const auto seen = index(error::seen_of(landmark));
-    auto errors_px = as_vector(errors_).segment<2>(seen);
+    const auto errors_px = as_vector(errors_).segment<2>(seen);
     if (abrupt[landmark] != Abrupt::detector || deviation(landmark) < kHuber ||
         errors_px.norm() < kHuber * sigma_px_[landmark])
       continue;
     any = true;
-    errors_px.setZero();
-    covariance_.middleRows<2>(seen).setZero();
-    covariance_.middleCols<2>(seen).setZero();
-    set_variance(seen_prior(landmark, sigma_px_[landmark]));
+    end_error(seen_prior(landmark, sigma_px_[landmark]));
     abrupt[landmark] = Abrupt::neither;
   }
   return any;
+}
+
+/// Sets an error to 0, as likely as at first.
+void ErrorFilter::end_error(const ErrorPrior& prior) {
+  const auto first = index(prior.first);
+  as_vector(errors_).segment(first, prior.count).setZero();
+  covariance_.middleRows(first, prior.count).setZero();
+  covariance_.middleCols(first, prior.count).setZero();
+  set_variance(prior);
 }
 
 /// Landmarks that are further off than is likely count less: those that the detector has moved

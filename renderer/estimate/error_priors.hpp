@@ -53,8 +53,8 @@ inline constexpr double kJump_m = 0.05;
 inline constexpr double kSharedBend_rad = 12 * kDegree, kOwnBend_rad = 6 * kDegree;
 /// Trackers guess folded fingers: their bends are so much less certain.
 inline constexpr double kFoldedBend = 1.5;
-/// Across the camera's axis, and along it.
-inline constexpr double kDriftAcross_m = 1.7e-3, kDriftAlong_m = 0.7e-3;
+/// Of a joint, for a moment. Trackers err by less; this also holds what bends cannot explain.
+inline constexpr double kDrift_m = 7e-3;
 
 /// Landmarks of images that are closer than this say the same.
 inline constexpr std::int64_t kShortest_ns = 9'000'000;
@@ -62,7 +62,7 @@ inline constexpr std::int64_t kShortest_ns = 9'000'000;
 /// the least noise, which the pixels cause.
 inline constexpr double kWhiteShare = 0.35, kLeastNoise_px = 0.6;
 /// Of a detector that reports no sigma.
-inline constexpr double kUnknownSigma_px = 5;
+inline constexpr double kUnknownSigma_px = 3;
 /// A landmark that is further off than so many standard deviations counts less. If half of them are
 /// this far off, they are not of the tracker's hand.
 inline constexpr double kHuber = 3, kContradicted = 6;
@@ -79,10 +79,7 @@ void for_priors(const Visit& visit) {
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
     visit(ErrorPrior{error::place_of(landmark), 3, std::hypot(kOwnPlace_m, seen_place_m(landmark)),
                      kLasting_s});
-  for (int part = -1; part < kFingers; ++part) {
-    visit(ErrorPrior{error::drift_of(part), 2, kDriftAcross_m, kDrift_s});
-    visit(ErrorPrior{error::drift_of(part) + 2, 1, kDriftAlong_m, kDrift_s});
-  }
+  visit(ErrorPrior{error::kDrift, 2 * kLandmarks, kDrift_m, kDrift_s});
 }
 
 /// The prior of a landmark's error, px.

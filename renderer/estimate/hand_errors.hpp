@@ -27,24 +27,24 @@ inline constexpr std::size_t kMissing = kSize + 1;
 inline constexpr std::size_t kBend = kMissing + kFingers;
 /// By finger: towards the thumb or away from it, rad.
 inline constexpr std::size_t kSpread = kBend + kFingers * kBendsOfFinger;
-/// The palm, then each finger: displaced for a moment, m.
+/// By landmark: its joint, displaced for a moment along the camera's x and y, m.
 inline constexpr std::size_t kDrift = kSpread + kFingers;
 /// By landmark, in the axes of its joint, m: where the detector sees the joint. A part of it is the
 /// tracker's error, own_share().
-inline constexpr std::size_t kPlace = kDrift + 3 * (1 + kFingers);
+inline constexpr std::size_t kPlace = kDrift + 2 * kLandmarks;
 /// By landmark: the detector's error of the moment, px.
 inline constexpr std::size_t kSeen = kPlace + 3 * kLandmarks;
 inline constexpr std::size_t kCount = kSeen + 2 * kLandmarks;
 
-/// The first number of a finger or a landmark. drift_of(-1): of the palm.
+/// The first number of a finger or a landmark.
 /// @{
 constexpr std::size_t missing_of(int finger) { return kMissing + static_cast<std::size_t>(finger); }
 constexpr std::size_t bend_of(int finger, int joint) {
   return kBend + static_cast<std::size_t>(kBendsOfFinger * finger + joint);
 }
 constexpr std::size_t spread_of(int finger) { return kSpread + static_cast<std::size_t>(finger); }
-constexpr std::size_t drift_of(int finger) {
-  return kDrift + 3 * static_cast<std::size_t>(finger + 1);
+constexpr std::size_t drift_of(int landmark) {
+  return kDrift + 2 * static_cast<std::size_t>(landmark);
 }
 constexpr std::size_t place_of(int landmark) {
   return kPlace + 3 * static_cast<std::size_t>(landmark);
