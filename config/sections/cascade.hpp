@@ -42,8 +42,6 @@ void describe(Visitor& visitor, Predict& predict) {
 struct Skin {
   bool fit = true;
   bool widths = true;
-  bool turn = true;
-  bool bend = true;
 };
 
 template <class Visitor>
@@ -54,12 +52,6 @@ void describe(Visitor& visitor, Skin& skin) {
   visitor.field(
       "widths", skin.widths,
       "With fit: estimate the widths of the person's fingers from the mask of the camera image.");
-  visitor.field("turn", skin.turn,
-                "Learn from the landmarks by how much the tracker's hands are turned about their "
-                "wrist, and draw them turned back.");
-  visitor.field("bend", skin.bend,
-                "Bend the fingers of the drawn hand such that their joints are seen nearer to the "
-                "landmarks, before the drawing is moved onto them.");
 }
 
 /// How landmarks Q of an older image are carried to the time of the light; P are the joints of the
@@ -80,7 +72,7 @@ constexpr std::array<std::string_view, 8> words_of(FilterMethod) {
 
 /// [cascade.filter]
 struct Filter {
-  FilterMethod method = FilterMethod::offset_kalman;
+  FilterMethod method = FilterMethod::articulated;
   double process = 3e3;
   double motion_process = 3e6;
   double noise_px = 1.14;
@@ -90,7 +82,6 @@ struct Filter {
   double blend_px = 8;
   bool hindsight = true;
   double lost_ms = 300;
-  bool definitions = true;
 
   bool operator==(const Filter&) const = default;  ///< compares all members
 };
@@ -104,9 +95,9 @@ void describe(Visitor& visitor, Filter& filter) {
       "kalman: a constant-velocity Kalman filter on Q, without the tracker. paper: Q + "
       "P_now - P_then for each joint. one_euro: a one-euro filter on the offset Q - P. "
       "offset_kalman: a constant-velocity Kalman filter on that offset. articulated: the hand "
-      "is drawn without the tracker's most likely errors, in place of turn, bend and "
-      "definitions; offset_kalman where the tracker is not to be believed. ideal: the "
-      "true landmarks, which only the simulator knows.");
+      "is drawn without the tracker's most likely errors, or as by offset_kalman while the "
+      "landmarks contradict the tracker. ideal: the true landmarks, which only the simulator "
+      "knows.");
   visitor.field("process", filter.process, between(0, 1e9, "px^2/s^3"),
                 "offset_kalman: process noise, the spectral density of the offset's acceleration.");
   visitor.field("motion_process", filter.motion_process, between(0, 1e12, "px^2/s^3"),
@@ -129,9 +120,6 @@ void describe(Visitor& visitor, Filter& filter) {
                 "have arrived since. false: P as it was predicted at that time.");
   visitor.field("lost_ms", filter.lost_ms, between(1, 10000, "ms"),
                 "Landmarks older than this fade out; then the tracker is used alone.");
-  visitor.field("definitions", filter.definitions,
-                "Learn where the detector sees each joint in comparison with the tracker, and move "
-                "its landmarks to the joints as the tracker defines them.");
 }
 
 /// How the drawing is moved onto the landmarks (docs/method.md#correct).

@@ -47,8 +47,6 @@ class LandmarkTrack {
   /// Where the landmarks are expected at `time_ns`: P plus Q̂ - P of the last frame. Empty if there
   /// is no P (HandTrack::recent_landmarks()).
   std::optional<LandmarkPoints> expected_at(std::int64_t time_ns, const HandTrack& track) const;
-  /// Q̂ - P of the last frame.
-  const LandmarkPoints& moved_px() const { return moved_px_; }
   /// Filtered::is_alone of the last frame.
   bool is_alone() const { return is_alone_; }
 

@@ -10,7 +10,6 @@
 #include "renderer/content/textures.hpp"
 #include "renderer/correct/deform.hpp"
 #include "renderer/predict/plausible_pose.hpp"
-#include "renderer/skin/finger_bend.hpp"
 
 namespace handcast::renderer {
 namespace {
@@ -47,10 +46,7 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
     : side_(side),
       settings_(settings),
       calibration_(calibration),
-      states_{.reports = {.snaps = FingerSnaps(calibration),
-                          .orientation_bias = OrientationBias(calibration),
-                          .landmark_offset = LandmarkOffset(calibration)},
-              .motion = {.track = HandTrack(settings.predict, calibration),
+      states_{.motion = {.track = HandTrack(settings.predict, calibration),
                          .landmarks = LandmarkTrack(filter_of(settings), std::move(oracle)),
                          .estimate = HandEstimate(calibration),
                          .ladder = HandLadder(settings)},
@@ -104,42 +100,30 @@ void HandPipeline::aim(const calib::ProjectorModel& projector) {
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose) {
   if (!is_plausible(pose, calibration_.camera_from_tracker)) return;
-  auto& [reports, motion, light, shape] = states_;
-  if (motion.landmarks.is_alone()) reports.snaps.forget();
-  const auto held = settings_.predict.method == config::PredictMethod::acceleration && !estimates()
-                        ? reports.snaps.held(origin_ns, pose, motion.landmarks.moved_px())
-                        : pose;
-  const auto pushed = motion.track.push(now_ns, origin_ns, held);
+  auto& motion = states_.motion;
+  const auto pushed = motion.track.push(now_ns, origin_ns, pose);
   motion.landmarks.tracker_sample(now_ns, pushed);
   if (pushed == PoseHistory::Pushed::begins_anew) motion.estimate.tracker_jumped();
   if (estimates()) motion.estimate.look_back(motion.track);
-  shape.surface.learn(origin_ns, held);
+  states_.shape.surface.learn(origin_ns, pose);
 }
 
 void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
                         const msg::HandLandmarks& seen) {
-  auto& [reports, motion, light, shape] = states_;
-  const bool is_alone = motion.landmarks.is_alone();
-  if (const auto pose = motion.track.recent_pose(origin_ns); pose && !is_alone) {
-    if (settings_.skin.turn) reports.orientation_bias.learn(origin_ns, *pose, seen);
-    if (settings_.filter.definitions)
-      reports.landmark_offset.learn(origin_ns, reports.orientation_bias.turned(*pose), seen);
-  }
+  auto& motion = states_.motion;
   if (estimates()) {
     motion.estimate.detection(origin_ns, seen);
     motion.estimate.look_back(motion.track);
   }
-  reports.has_sigmas =
+  has_sigmas_ =
       std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
-  const auto as_tracked = reports.landmark_offset.as_tracked(seen);
-  reports.snaps.detection(origin_ns, as_tracked);
-  if (!is_alone) motion.ladder.detection(motion.track, origin_ns, as_tracked);
-  motion.landmarks.detection(now_ns, origin_ns, as_tracked, motion.track);
+  if (!motion.landmarks.is_alone()) motion.ladder.detection(motion.track, origin_ns, seen);
+  motion.landmarks.detection(now_ns, origin_ns, seen, motion.track);
 }
 
 std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
                                                std::optional<std::int64_t> image_ns) {
-  auto& [reports, motion, light, shape] = states_;
+  auto& [motion, light, shape] = states_;
   const auto predicted = motion.track.predict(now_ns, target_ns);
   if (!predicted) {
     light.presence.no_hand(target_ns);
@@ -227,21 +211,9 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
     states_.motion.ladder.registered(target_ns, frame.registered.moved_now);
 }
 
-/// The pose as the landmarks show that it is turned and bent, if the camera can see it so.
-ProjectedPose HandPipeline::posed(const HandFrame& frame) const {
-  if (frame.estimated) return *frame.estimated;
-  const Corrected& corrected = frame.corrected;
-  const bool is_bent = settings_.skin.bend && corrected.has_landmarks;
-  if (!settings_.skin.turn && !is_bent) return corrected.posed;
-  msg::HandPose pose = corrected.posed.pose;
-  if (settings_.skin.turn) pose = states_.reports.orientation_bias.turned(pose);
-  if (is_bent) pose = bent(pose, frame.registered.landmarks, calibration_);
-  return project(calibration_, pose).value_or(corrected.posed);
-}
-
 void HandPipeline::skin(HandFrame& frame, float shading) {
   auto& shape = states_.shape;
-  frame.drawn = posed(frame);
+  frame.drawn = frame.estimated.value_or(frame.corrected.posed);
   frame.from_px = to_projector(frame.drawn.landmarks, frame.drawn);
   frame.to_px = shape.fingers.moved(to_projector(frame.registered.landmarks, frame.drawn));
   frame.skinned =
@@ -287,7 +259,7 @@ void HandPipeline::learn_outline(const HandFrame& frame, std::int64_t target_ns,
   // Landmarks without sigmas may be exact: the twin's model has none, and pulling them to the
   // outline of a drawn shape that is not exact makes them worse.
   if (settings_.correct.method != config::CorrectMethod::vertices || !settings_.correct.outline ||
-      !states_.reports.has_sigmas)
+      !has_sigmas_)
     return;
   shape.palm.measure(target_ns, frame.skinned->projected_px, frame.to_px, mask);
   shape.fingers.measure(target_ns, frame.skinned->projected_px, frame.to_px, mask);

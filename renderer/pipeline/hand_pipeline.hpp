@@ -14,17 +14,14 @@
 #include "renderer/correct/rung_mover.hpp"
 #include "renderer/draw/painter.hpp"
 #include "renderer/estimate/hand_estimate.hpp"
-#include "renderer/filter/landmark_offset.hpp"
 #include "renderer/filter/landmark_track.hpp"
 #include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/pipeline/frame.hpp"
-#include "renderer/predict/finger_snaps.hpp"
 #include "renderer/predict/hand_track.hpp"
 #include "renderer/predict/presence.hpp"
 #include "renderer/register/late_registration.hpp"
 #include "renderer/skin/hand_surface.hpp"
-#include "renderer/skin/orientation_bias.hpp"
 
 namespace handcast::renderer {
 
@@ -48,13 +45,6 @@ struct HandFrame {
 
 /// What is known of one hand from one message or frame to the next.
 struct HandStates {
-  /// How the reports of the sensors differ from the hand.
-  struct Reports {
-    FingerSnaps snaps;                 ///< of the tracker: fingers that it has lost
-    OrientationBias orientation_bias;  ///< of the tracker: how it turns the hand
-    LandmarkOffset landmark_offset;    ///< of the detector: where it sees the tracker's joints
-    bool has_sigmas = false;           ///< the detector says how wrong its landmarks may be
-  } reports;
   /// Where the hand is: the states of predict, filter and ladder.
   struct Motion {
     HandTrack track;
@@ -182,7 +172,6 @@ class HandPipeline {
                                          const Filtered& filtered) const;
   Corrected drawn_as(const ProjectedPose& hand, const Predicted& predicted,
                      const Filtered& filtered) const;
-  ProjectedPose posed(const HandFrame& frame) const;
   LandmarkPoints to_projector(const LandmarkPoints& camera_px, const ProjectedPose& depths) const;
   LateRegistration::Hand late_hand(const HandFrame& frame) const;
 
@@ -190,6 +179,7 @@ class HandPipeline {
   config::Cascade settings_;
   calib::Calibration calibration_;
   HandStates states_;
+  bool has_sigmas_ = false;  ///< the detector says how wrong its landmarks may be
   MipChain picture_;
   MipView worn_;  ///< the picture of now; without texels, picture_
   std::uint64_t mesh_revision_ = new_revision(), picture_revision_ = new_revision();

@@ -23,10 +23,9 @@ BY_VARIANT = {
         "vertices": ("+ vertices, moved mask, longer fill", "paper"),
         "registration": ("+ late registration", "paper"),
         "network": ("+ our network", "paper"),
-        "learned": ("+ learned turn and definitions", "paper"),
-        "bend": ("+ bent fingers", "paper"),
+        "estimate": ("+ one estimate of the tracker's errors", "paper"),
         "outline": ("+ outline of open hands", "paper"),
-        "gate": ("+ gate, acceleration, held snaps: handcast", "paper"),
+        "gate": ("+ gate, acceleration: handcast", "paper"),
     },
     "two_hands": {
         "left": ("left hand alone", ""),
@@ -43,7 +42,6 @@ BY_VARIANT = {
     },
     "causes": {
         "all_errors": ("all errors", ""),
-        "without_turn": ("all errors, without `skin.turn`", "all_errors"),
         "our_mesh": ("without the shape of other hands", "all_errors"),
         "right_place": ("without the tracker's place, turn and size", "all_errors"),
         "right_joints": ("without the tracker's joints at other places", "all_errors"),

@@ -69,9 +69,8 @@ TEST(ShippedRigs, PaperIsThePapersCascade) {
           "twin.detector.bias_px = 2.5", "twin.detector.bias_ms = 350",
           "twin.detector.bias_hidden = 6", "cascade.predict.method = \"velocity\"",
           "cascade.predict.still_mm_s = 0", "cascade.skin.fit = false",
-          "cascade.skin.widths = false", "cascade.skin.turn = false", "cascade.skin.bend = false",
-          "cascade.filter.method = \"paper\"", "cascade.filter.hindsight = false",
-          "cascade.filter.blend_ms = 0", "cascade.filter.definitions = false",
+          "cascade.skin.widths = false", "cascade.filter.method = \"paper\"",
+          "cascade.filter.hindsight = false", "cascade.filter.blend_ms = 0",
           "cascade.correct.method = \"grid\"", "cascade.correct.alpha = 0.5",
           "cascade.correct.outline = false", "cascade.mask.advance = false",
           "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
@@ -103,7 +102,7 @@ TEST(ShippedRigs, FramesOfOurSoftwareTakeTimesThatMissRefreshes) {
 
 TEST(ShippedRigs, TwinIsTheCascadeThatTheDocumentsDescribe) {
   const auto cascade = shipped("twin").cascade;
-  EXPECT_EQ(cascade.filter.method, FilterMethod::offset_kalman);
+  EXPECT_EQ(cascade.filter.method, FilterMethod::articulated);
   EXPECT_TRUE(cascade.filter.hindsight);
   EXPECT_EQ(cascade.correct.method, CorrectMethod::vertices);
   EXPECT_EQ(cascade.registration.method, RegisterMethod::mask);

@@ -101,7 +101,6 @@ float beside_px(bool outline, float sigma_px = 3) {
   const auto vertices = [&](float wrong_px) {
     auto settings = cascade(config::CorrectMethod::vertices, config::FillMethod::reflect);
     settings.correct.outline = outline;
-    settings.filter.definitions = false;
     const auto pipeline = make_pipeline(settings);
     feed_still(*pipeline, {hand}, 400 * kMs);
     for (std::int64_t t = 20 * kMs; t < 400 * kMs; t += 2 * kMs) {
@@ -186,8 +185,6 @@ std::vector<float> moved_by_grid(config::Cascade settings, std::vector<Side> sid
 config::Cascade paper_grid() {
   auto settings = cascade(config::CorrectMethod::grid, config::FillMethod::none);
   settings.filter.method = config::FilterMethod::paper;
-  settings.filter.definitions = false;
-  settings.skin.bend = false;
   settings.ladder.rung = config::RungChoice::landmarks;
   return settings;
 }

@@ -197,8 +197,7 @@ struct Drawn {
 
 /// A hand with fingers bent by these angles at two joints, deg, whose landmarks are seen, while the
 /// tracker reports them bent by others.
-Drawn drawn(float true_deg, float reported_deg, const config::Skin& skin,
-            config::FilterMethod method = config::FilterMethod::offset_kalman) {
+Drawn drawn(float true_deg, float reported_deg, config::FilterMethod method) {
   const auto calibration = rig_above_hand();
   const auto pose_with = [](float bent_deg) {
     const std::array<float, 4> finger{0, bent_deg, bent_deg - 5, 20};
@@ -207,9 +206,7 @@ Drawn drawn(float true_deg, float reported_deg, const config::Skin& skin,
   };
   config::Cascade settings;
   settings.ladder.rung = config::RungChoice::landmarks;
-  settings.skin = skin;
   settings.filter.method = method;
-  settings.filter.definitions = false;  // an error that lasts teaches them
   auto hand =
       *HandPipeline::load(Side::left, settings, {.left = "builtin:white"}, {}, calibration, {});
   const auto seen = landmarks_of(calibration, 0, pose_with(true_deg), {}).hands[0];
@@ -238,22 +235,11 @@ float skin_off_px(const Drawn& a, const Drawn& b) {
 }
 
 TEST(HandPipeline, FingersAreDrawnAsBentAsTheLandmarksShow) {
-  config::Skin skin;
-  skin.bend = skin.turn = false;
-  const auto truth = drawn(50, 50, skin), straight = drawn(50, 38, skin);
-  skin.bend = true;
-  const auto bent = drawn(50, 38, skin);
-  EXPECT_GT(tips_off_px(straight, truth), 10);
-  EXPECT_LT(tips_off_px(bent, truth), 0.4f * tips_off_px(straight, truth));
-  EXPECT_LT(skin_off_px(bent, truth), 0.5f * skin_off_px(straight, truth));
-}
-
-TEST(HandPipeline, TheEstimateBendsThemInOnePiece) {
-  config::Skin skin;
-  skin.bend = skin.turn = false;
   using config::FilterMethod;
-  const auto truth = drawn(50, 50, skin), straight = drawn(50, 38, skin),
-             bent = drawn(50, 38, skin, FilterMethod::articulated);
+  const auto truth = drawn(50, 50, FilterMethod::offset_kalman),
+             straight = drawn(50, 38, FilterMethod::offset_kalman),
+             bent = drawn(50, 38, FilterMethod::articulated);
+  EXPECT_GT(tips_off_px(straight, truth), 10);
   EXPECT_LT(tips_off_px(bent, truth), 0.4f * tips_off_px(straight, truth));
   EXPECT_LT(skin_off_px(bent, truth), 0.5f * skin_off_px(straight, truth));
 }
