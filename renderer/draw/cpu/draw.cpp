@@ -73,7 +73,8 @@ void find_bounded_places(const PixelBlock& block, const Sampler& sampler, std::u
   alignas(64) std::uint32_t fresh[kLanes];
 #pragma GCC unroll 1
   for (int i = 0; i < kLanes; ++i)
-    factor[i] = static_cast<float>(static_cast<std::int32_t>(block.tag[i] >> 8 & 0xff)) / 255;
+    factor[i] =
+        static_cast<float>(static_cast<std::int32_t>(block.tag[i] >> 8 & 0xff)) * (1 / 255.f);
   mix(at, factor, fresh);
   const std::uint32_t kept = is_first ? 0 : ~0u;
 #pragma GCC ivdep

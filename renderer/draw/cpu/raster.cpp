@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -13,136 +14,227 @@ namespace handcast::renderer::cpu {
 namespace {
 
 constexpr int kSubpixels = 16;
+constexpr int kValues = 4;   ///< that are interpolated: depth, s, t and light
+constexpr int kAtOnce = 16;  ///< triangles that are set up at once
+template <class T>
+using Each = T[kAtOnce];
 
-/// The values interpolated over a triangle, at a pixel, or their change from pixel to pixel.
-struct Values {
-  float depth, s, t, light;
+/// A window is as many columns of blocks as the bits of a word can tell apart.
+constexpr int kColumns = 32 / kBandRows, kWindow = kColumns * kBandRows;
 
-  [[gnu::always_inline]] Values operator+(const Values& o) const {
-    return {depth + o.depth, s + o.s, t + o.t, light + o.light};
-  }
-  [[gnu::always_inline]] Values operator-(const Values& o) const {
-    return {depth - o.depth, s - o.s, t - o.t, light - o.light};
-  }
-  [[gnu::always_inline]] Values operator*(float factor) const {
-    return {depth * factor, s * factor, t * factor, light * factor};
-  }
+/// The corners of some triangles, clockwise.
+struct Corners {
+  alignas(64) Each<std::int32_t> x[3], y[3];
+  alignas(64) Each<float> value[3][kValues];  ///< with u and v for s and t
+  alignas(64) Each<float> area;               ///< doubled
+
+  Corners() : x{}, y{}, value{} { std::fill_n(area, kAtOnce, 1.f); }
 };
 
-[[gnu::always_inline]] inline Values smaller(const Values& a, const Values& b) {
-  return {std::min(a.depth, b.depth), std::min(a.s, b.s), std::min(a.t, b.t),
-          std::min(a.light, b.light)};
-}
-[[gnu::always_inline]] inline Values larger(const Values& a, const Values& b) {
-  return {std::max(a.depth, b.depth), std::max(a.s, b.s), std::max(a.t, b.t),
-          std::max(a.light, b.light)};
-}
-
-/// A triangle prepared for a walk from block to block. An edge value is >= 0 at the pixels on its
+/// Triangles prepared for a walk from block to block. An edge value is >= 0 at the pixels on its
 /// inner side.
-struct Setup {
-  int first_column, last_column, first_row, last_row;  ///< of blocks
-  std::array<std::int64_t, 3> edge;                    ///< at the first pixel of the first block
-  std::array<std::int32_t, 3> edge_dx, edge_dy;        ///< change per pixel
-  Values start, dx, dy;                                ///< at the same pixel; change per pixel
-  Values least, most;                                  ///< of the corners
-  std::uint32_t tag;                                   ///< of a pixel without light
+struct Setups {
+  alignas(64) Each<std::int32_t> first_column, last_column, first_row, last_row;  ///< of blocks
+  alignas(64) Each<double> edge[3];                       ///< at the first pixel of the first block
+  alignas(64) Each<std::int32_t> edge_dx[3], edge_dy[3];  ///< change per pixel
+  alignas(64) Each<float> start[kValues], dx[kValues], dy[kValues];  ///< the same of the values
+  alignas(64) Each<std::uint32_t> tag;                               ///< of a pixel without light
+  alignas(64) Each<std::int32_t> is_delicate;                        ///< 0 or 1
+  /// The blocks of the first window that may be covered: bit c + kColumns r for column c and row r.
+  alignas(64) Each<std::uint32_t> blocks;
 };
 
-/// Pixels exactly on a top or left edge belong to the triangle; those on other edges do not.
-inline bool is_top_left(std::int32_t dx, std::int32_t dy) { return dy < 0 || (dy == 0 && dx > 0); }
-
-[[gnu::always_inline]] inline Values values_of(const Corner& c, const TexelMap& map) {
-  return {c.depth, c.u * map.scale.x + map.offset.x, c.v * map.scale.y + map.offset.y, c.light};
-}
-
-/// Sets the blocks that the triangle touches. Returns false if its bounds contain no pixel centre
-/// of the region.
-[[gnu::always_inline]] inline bool set_bounds(const Corner& a, const Corner& b, const Corner& c,
-                                              Rect region, Setup& s) {
-  const auto first = [](int p, int q, int r) {
-    return (std::min({p, q, r}) + kSubpixels - 1) >> 4;
-  };
-  const auto last = [](int p, int q, int r) { return std::max({p, q, r}) >> 4; };
-  const int x0 = std::max(first(a.x, b.x, c.x), region.x0),
-            x1 = std::min(last(a.x, b.x, c.x), region.x1 - 1);
-  const int y0 = std::max(first(a.y, b.y, c.y), region.y0),
-            y1 = std::min(last(a.y, b.y, c.y), region.y1 - 1);
-  s.first_column = x0 / kBlockSide;
-  s.last_column = x1 / kBlockSide;
-  s.first_row = y0 / kBlockSide;
-  s.last_row = y1 / kBlockSide;
-  return x0 <= x1 && y0 <= y1;
-}
-
-[[gnu::always_inline]] inline void set_edge(int k, const Corner& from, const Corner& to, Setup& s) {
-  constexpr int kPitch = kBlockSide * kSubpixels;
-  const std::int32_t dx = to.x - from.x, dy = to.y - from.y;
-  const std::int64_t x = s.first_column * kPitch - from.x, y = s.first_row * kPitch - from.y;
-  s.edge[k] = dx * y - dy * x - (is_top_left(dx, dy) ? 0 : 1);
-  s.edge_dx[k] = -dy * kSubpixels;
-  s.edge_dy[k] = dx * kSubpixels;
-}
-
-[[gnu::always_inline]] inline void set_values(const Corner& a, const Corner& b, const Corner& c,
-                                              std::int64_t doubled_area, const TexelMap& map,
-                                              Setup& s) {
-  const float scale = kSubpixels / static_cast<float>(doubled_area);
-  const Values at_a = values_of(a, map), at_b = values_of(b, map), at_c = values_of(c, map),
-               to_b = (at_b - at_a) * scale, to_c = (at_c - at_a) * scale;
-  s.dx = to_b * static_cast<float>(c.y - a.y) + to_c * static_cast<float>(a.y - b.y);
-  s.dy = to_b * static_cast<float>(a.x - c.x) + to_c * static_cast<float>(b.x - a.x);
-  const float x =
-      static_cast<float>(s.first_column * kBlockSide) - static_cast<float>(a.x) / kSubpixels;
-  const float y =
-      static_cast<float>(s.first_row * kBlockSide) - static_cast<float>(a.y) / kSubpixels;
-  s.start = at_a + s.dx * x + s.dy * y;
-  s.start.light += 0.5f;  // rounds when it is truncated
-  s.least = smaller(at_a, smaller(at_b, at_c));
-  s.most = larger(at_a, larger(at_b, at_c));
-}
-
-/// The level of a picture that has about one texel per pixel in this triangle: half the binary
-/// logarithm of the texels per pixel, rounded.
-[[gnu::always_inline]] inline std::uint32_t level_of(const Corner& a, const Corner& b,
-                                                     const Corner& c, std::int64_t doubled_area,
-                                                     const TriangleList& list) {
-  const float cross = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
-  const float ratio =
-      std::abs(cross) * list.texels * (kSubpixels * kSubpixels) / static_cast<float>(doubled_area);
-  const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(2 * ratio) >> 23) - 127;
-  const int last = static_cast<int>(list.levels.size()) - 1;
-  return static_cast<std::uint32_t>(std::clamp(exponent >> 1, 0, last));
-}
-
-/// An edge value at the first pixel of a block, narrowed to 32 bits such that all lanes keep their
-/// sign: lanes differ by at most 2 * 3 * 16 * 960,000 < 2^27.
-template <bool kDelicate>
-[[gnu::always_inline]] inline std::int32_t narrowed(std::int64_t edge) {
-  constexpr std::int64_t kLimit = 1 << 30;
-  if constexpr (kDelicate) edge = std::clamp(edge, -kLimit, kLimit);
-  return static_cast<std::int32_t>(edge);
-}
-
-/// The difference of lane i of a block from the first pixel.
-struct LaneSteps {
-  alignas(64) std::int32_t edge[3][kLanes];
-  alignas(64) float depth[kLanes], s[kLanes], t[kLanes], light[kLanes];
-};
-
-[[gnu::always_inline]] inline void set_steps(const Setup& s, LaneSteps& steps) {
-#pragma GCC unroll 1
-  for (int i = 0; i < kLanes; ++i) {
-    const int x = i % kBlockSide, y = i / kBlockSide;
-    const auto right = static_cast<float>(x), down = static_cast<float>(y);
-    steps.edge[0][i] = s.edge_dx[0] * x + s.edge_dy[0] * y;
-    steps.edge[1][i] = s.edge_dx[1] * x + s.edge_dy[1] * y;
-    steps.edge[2][i] = s.edge_dx[2] * x + s.edge_dy[2] * y;
-    steps.depth[i] = s.dx.depth * right + s.dy.depth * down;
-    steps.s[i] = s.dx.s * right + s.dy.s * down;
-    steps.t[i] = s.dx.t * right + s.dy.t * down;
-    steps.light[i] = s.dx.light * right + s.dy.light * down;
+[[gnu::always_inline]] inline void gather(const TriangleList& list,
+                                          std::span<const std::uint32_t> triangles, Corners& out) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::int64_t area = list.doubled_areas[triangles[i]];
+    const auto& [first, second, third] = list.triangles[triangles[i]];
+    const std::array at{first, area > 0 ? second : third, area > 0 ? third : second};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Corner& corner = list.corners[at[k]];
+      out.x[k][i] = corner.x;
+      out.y[k][i] = corner.y;
+      out.value[k][0][i] = corner.depth;
+      out.value[k][1][i] = corner.u;
+      out.value[k][2][i] = corner.v;
+      out.value[k][3][i] = corner.light;
+    }
+    out.area[i] = static_cast<float>(std::abs(area));
   }
+}
+
+/// Sets the blocks that the triangles touch. A triangle whose bounds contain no pixel centre of the
+/// region is empty.
+[[gnu::always_inline]] inline void set_bounds(const Corners& of, Rect region, Setups& s) {
+#pragma GCC ivdep
+#pragma GCC unroll 1
+  for (int i = 0; i < kAtOnce; ++i) {
+    const auto first = [i](const Each<std::int32_t>* at) {
+      return (std::min(std::min(at[0][i], at[1][i]), at[2][i]) + kSubpixels - 1) >> 4;
+    };
+    const auto last = [i](const Each<std::int32_t>* at) {
+      return std::max(std::max(at[0][i], at[1][i]), at[2][i]) >> 4;
+    };
+    const int x0 = std::max(first(of.x), region.x0), x1 = std::min(last(of.x), region.x1 - 1),
+              y0 = std::max(first(of.y), region.y0), y1 = std::min(last(of.y), region.y1 - 1);
+    const bool is_empty = (x0 > x1) | (y0 > y1);
+    s.first_column[i] = x0 >> kBlockBits;
+    s.last_column[i] = is_empty ? s.first_column[i] - 1 : x1 >> kBlockBits;
+    s.first_row[i] = y0 >> kBlockBits;
+    s.last_row[i] = is_empty ? s.first_row[i] - 1 : y1 >> kBlockBits;
+  }
+}
+
+/// Sets edge k. Pixels exactly on a top or left edge belong to the triangle; those on other edges
+/// do not.
+[[gnu::always_inline]] inline void set_edge(int k, const Corners& of, Setups& s) {
+  constexpr int kPitch = kBlockSide * kSubpixels;
+  const int next = (k + 1) % 3;
+#pragma GCC ivdep
+#pragma GCC unroll 1
+  for (int i = 0; i < kAtOnce; ++i) {
+    const std::int32_t dx = of.x[next][i] - of.x[k][i], dy = of.y[next][i] - of.y[k][i],
+                       x = s.first_column[i] * kPitch - of.x[k][i],
+                       y = s.first_row[i] * kPitch - of.y[k][i];
+    const std::int32_t is_outer = (dy > 0) | ((dy == 0) & (dx <= 0));
+    s.edge[k][i] = double{1} * dx * y - double{1} * dy * x - is_outer;
+    s.edge_dx[k][i] = -dy * kSubpixels;
+    s.edge_dy[k][i] = dx * kSubpixels;
+  }
+}
+
+/// Sets the level of the picture that has about one texel per pixel in each triangle: half the
+/// binary logarithm of the texels per pixel, rounded.
+[[gnu::always_inline]] inline void find_levels(const Corners& of, float texels, int last,
+                                               Each<std::int32_t>& level) {
+#pragma GCC ivdep
+#pragma GCC unroll 1
+  for (int i = 0; i < kAtOnce; ++i) {
+    const auto &a = of.value[0], &b = of.value[1], &c = of.value[2];
+    const float cross =
+        (b[1][i] - a[1][i]) * (c[2][i] - a[2][i]) - (c[1][i] - a[1][i]) * (b[2][i] - a[2][i]);
+    const float ratio = std::abs(cross) * texels * (kSubpixels * kSubpixels) / of.area[i];
+    const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(2 * ratio) >> 23) - 127;
+    level[i] = std::min(std::max(exponent >> 1, 0), last);
+  }
+}
+
+/// Sets value k: it is scale[i] times that of the corners, plus offset[i].
+[[gnu::always_inline]] inline void set_value(int k, const Corners& of, const float* scale,
+                                             const float* offset, float rounded, Setups& s) {
+#pragma GCC ivdep
+#pragma GCC unroll 1
+  for (int i = 0; i < kAtOnce; ++i) {
+    const float at_a = of.value[0][k][i] * scale[i] + offset[i],
+                at_b = of.value[1][k][i] * scale[i] + offset[i],
+                at_c = of.value[2][k][i] * scale[i] + offset[i];
+    const float per_area = kSubpixels / of.area[i];
+    const float to_b = (at_b - at_a) * per_area, to_c = (at_c - at_a) * per_area;
+    const auto step = [i](const Each<std::int32_t>* at, int to, int from) {
+      return static_cast<float>(at[to][i] - at[from][i]);
+    };
+    const float dx = to_b * step(of.y, 2, 0) + to_c * step(of.y, 0, 1),
+                dy = to_b * step(of.x, 0, 2) + to_c * step(of.x, 1, 0);
+    const float x = static_cast<float>(s.first_column[i] * kBlockSide) -
+                    static_cast<float>(of.x[0][i]) / kSubpixels,
+                y = static_cast<float>(s.first_row[i] * kBlockSide) -
+                    static_cast<float>(of.y[0][i]) / kSubpixels;
+    s.start[k][i] = at_a + dx * x + dy * y + rounded;
+    s.dx[k][i] = dx;
+    s.dy[k][i] = dy;
+  }
+}
+
+/// Finds the delicate triangles, of which edge values may not be exact in floats, or rounding may
+/// take an interpolated value out of the range of the corners by more than the border of a picture
+/// makes up for: edges longer than 100 px, or so long and thin that the sum of the steps over the
+/// bounds, in which values grow as length / height, is off by 1/8000 of the range.
+[[gnu::always_inline]] inline void find_delicate(const Corners& of, Setups& s) {
+  constexpr float kPixel = kSubpixels * kSubpixels, kLongest = 100 * kPixel,
+                  kMost = 4096 * kPixel * kPixel;  // of length^2 / height
+#pragma GCC ivdep
+#pragma GCC unroll 1
+  for (int i = 0; i < kAtOnce; ++i) {
+    std::int32_t most = 0;
+    for (int k = 0; k < 3; ++k)
+      most = std::max(std::max(most, std::abs(s.edge_dx[k][i])), std::abs(s.edge_dy[k][i]));
+    const auto longest = static_cast<float>(most);
+    s.is_delicate[i] = (longest > kLongest) | (longest * longest * longest > kMost * of.area[i]);
+  }
+}
+
+/// The blocks of a window of a size.
+[[gnu::always_inline]] inline std::uint32_t window_of(int columns, int rows) {
+  constexpr std::uint32_t kFirstColumn = ~0u / ((1u << kColumns) - 1);
+  const std::uint32_t row = (1u << std::min(columns, kColumns)) - 1,
+                      all = ~0u >> (kWindow - kColumns * std::max(rows, 1));
+  return rows > 0 ? kFirstColumn * row & all : 0;
+}
+
+/// Sets the blocks of the first window that are not outside of an edge.
+[[gnu::always_inline]] inline void find_blocks(Setups& s) {
+  using Ints = std::int32_t __attribute__((vector_size(4 * kAtOnce)));
+  Ints most[3], right[3], down[3];  // the largest value of the edge in a block, and its steps
+  int rows = 0;
+  for (int i = 0; i < kAtOnce; ++i)
+    rows = s.is_delicate[i] ? rows : std::max(rows, s.last_row[i] + 1 - s.first_row[i]);
+  for (int k = 0; k < 3; ++k) {
+    alignas(64) Each<std::int32_t> edge;
+#pragma GCC unroll 1
+    for (int i = 0; i < kAtOnce; ++i)
+      edge[i] = static_cast<std::int32_t>(s.is_delicate[i] ? 0 : s.edge[k][i]);
+    std::memcpy(&most[k], edge, sizeof edge);
+    std::memcpy(&right[k], s.edge_dx[k], sizeof right[k]);
+    std::memcpy(&down[k], s.edge_dy[k], sizeof down[k]);
+    most[k] += (kBlockSide - 1) * ((right[k] > 0 ? right[k] : 0) + (down[k] > 0 ? down[k] : 0));
+    right[k] *= kBlockSide;
+    down[k] *= kBlockSide;
+  }
+  Ints inside{};
+  for (int row = 0; row < rows; ++row) {
+    Ints at0 = most[0], at1 = most[1], at2 = most[2];
+    for (int column = 0; column < kColumns; ++column) {
+      inside |=
+          ((at0 | at1 | at2) >= 0) & static_cast<std::int32_t>(1u << (kColumns * row + column));
+      at0 += right[0];
+      at1 += right[1];
+      at2 += right[2];
+    }
+    for (int k = 0; k < 3; ++k) most[k] += down[k];
+  }
+  std::memcpy(s.blocks, &inside, sizeof s.blocks);
+#pragma GCC unroll 1
+  for (int i = 0; i < kAtOnce; ++i)
+    s.blocks[i] &=
+        window_of(s.last_column[i] + 1 - s.first_column[i], s.last_row[i] + 1 - s.first_row[i]);
+}
+
+/// Prepares up to kAtOnce triangles.
+[[gnu::always_inline]] inline void set_up(const TriangleList& list,
+                                          std::span<const std::uint32_t> triangles, Rect region,
+                                          Corners& corners, Setups& s) {
+  gather(list, triangles, corners);
+  set_bounds(corners, region, s);
+  for (int k = 0; k < 3; ++k) set_edge(k, corners, s);
+  find_delicate(corners, s);
+  find_blocks(s);
+  alignas(64) Each<std::int32_t> level;
+  alignas(64) Each<float> one, none{}, scale_x, scale_y, offset_x, offset_y;
+  find_levels(corners, list.texels, static_cast<int>(list.levels.size()) - 1, level);
+  std::fill_n(one, kAtOnce, 1.f);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const TexelMap& map = list.levels[static_cast<std::size_t>(level[i])];
+    scale_x[i] = map.scale.x;
+    scale_y[i] = map.scale.y;
+    offset_x[i] = map.offset.x;
+    offset_y[i] = map.offset.y;
+    s.tag[i] = tag_of(list.ids[list.triangles[triangles[i]][0]],
+                      shade_of(0, static_cast<std::uint32_t>(level[i])));
+  }
+  set_value(0, corners, one, none, 0, s);
+  set_value(1, corners, scale_x, offset_x, 0, s);
+  set_value(2, corners, scale_y, offset_y, 0, s);
+  set_value(3, corners, one, none, 0.5f, s);  // truncated later
 }
 
 /// `fresh` where the bits of `hit` are set. Conditional moves would become a jump over the stores
@@ -153,78 +245,141 @@ template <class T>
                           (std::bit_cast<std::uint32_t>(old) & ~hit));
 }
 
-[[gnu::always_inline]] inline float bounded(float value, float least, float most) {
-  const float raised = value > least ? value : least;
-  return raised < most ? raised : most;
+/// What a triangle shows at a pixel.
+struct Fresh {
+  float depth, s, t, light;
+};
+
+/// Writes lane `i` of a block if it is covered (`outside` >= 0) and nearest.
+[[gnu::always_inline]] inline void write_lane(PixelBlock& block, int i, std::int32_t outside,
+                                              const Fresh& fresh, std::uint32_t tag) {
+  const float depth = block.depth[i], s = block.s[i], t = block.t[i];
+  const std::uint32_t old_tag = block.tag[i];
+  tag |= static_cast<std::uint32_t>(static_cast<std::int32_t>(fresh.light)) << 8;
+  const std::uint32_t hit = ((outside >= 0) & (fresh.depth <= depth)) ? ~0u : 0;
+  block.depth[i] = chosen(hit, fresh.depth, depth);
+  block.s[i] = chosen(hit, fresh.s, s);
+  block.t[i] = chosen(hit, fresh.t, t);
+  block.tag[i] = chosen(hit, tag, old_tag);
 }
 
-/// Tests the pixels of a block and writes those that are covered and nearest. `edge` and `at` are
-/// the values at its first pixel. kDelicate: see is_delicate().
-template <bool kDelicate, bool kLit>
-[[gnu::always_inline]] inline void write_block(PixelBlock& block,
-                                               const std::array<std::int32_t, 3> edge,
-                                               const Values at, const LaneSteps& steps,
-                                               const Setup& setup) {
+/// The columns and rows of pixels from the first one of a window, by column and row of blocks, then
+/// lane.
+struct Places {
+  alignas(64) float right[kColumns][kLanes], down[kBandRows][kLanes];
+};
+constexpr Places places() {
+  Places places{};
+  for (int i = 0; i < kLanes; ++i) {
+    for (int c = 0; c < kColumns; ++c)
+      places.right[c][i] = static_cast<float>(c * kBlockSide + i % kBlockSide);
+    for (int r = 0; r < kBandRows; ++r)
+      places.down[r][i] = static_cast<float>(r * kBlockSide + i / kBlockSide);
+  }
+  return places;
+}
+
+/// A number that changes evenly from pixel to pixel.
+struct Ramp {
+  float first, dx, dy;
+
+  [[gnu::always_inline]] float at(float right, float down) const {
+    return first + dy * down + dx * right;
+  }
+  [[gnu::always_inline]] std::uint32_t bits_at(float right, float down) const {
+    return std::bit_cast<std::uint32_t>(at(right, down));
+  }
+};
+
+/// Draws triangle `i`, which must not be delicate, window by window.
+template <bool kLit>
+[[gnu::always_inline]] inline void fill_windows(const Setups& s, int i, RasterTarget& target) {
+  static constexpr Places kPlaces = places();
+  const auto value = [&](int k) { return Ramp{s.start[k][i], s.dx[k][i], s.dy[k][i]}; };
+  const auto edge = [&](int k) {
+    return Ramp{static_cast<float>(s.edge[k][i]), static_cast<float>(s.edge_dx[k][i]),
+                static_cast<float>(s.edge_dy[k][i])};
+  };
+  const Ramp edge0 = edge(0), edge1 = edge(1), edge2 = edge(2);
+  const Ramp depth = value(0), to_s = value(1), to_t = value(2), light = value(3);
+  const std::uint32_t tag = s.tag[i];
+  const int first_row = s.first_row[i], rows = s.last_row[i] + 1 - first_row,
+            columns = s.last_column[i] + 1 - s.first_column[i];
+  std::uint32_t covered = s.blocks[i];
+  for (int first = 0;;) {
+    PixelBlock* const blocks = target.row(first_row) + s.first_column[i] + first;
+    const auto shift = static_cast<float>(first * kBlockSide);
+    for (; covered != 0; covered &= covered - 1) {
+      const int bit = std::countr_zero(covered);
+      PixelBlock& block = blocks[bit / kColumns * target.columns() + bit % kColumns];
+      const float *const right = kPlaces.right[bit % kColumns], *const down =
+                                                                    kPlaces.down[bit / kColumns];
 #pragma GCC ivdep
 #pragma GCC unroll 1
-  for (int i = 0; i < kLanes; ++i) {
-    const std::int32_t outside =
-        (edge[0] + steps.edge[0][i]) | (edge[1] + steps.edge[1][i]) | (edge[2] + steps.edge[2][i]);
-    const float old_depth = block.depth[i], old_s = block.s[i], old_t = block.t[i];
-    const std::uint32_t old_tag = block.tag[i];
-    const float depth = at.depth + steps.depth[i];
-    float s = at.s + steps.s[i], t = at.t + steps.t[i],
-          light = kLit ? at.light + steps.light[i] : 255.f;
-    if constexpr (kDelicate) {
-      s = bounded(s, setup.least.s, setup.most.s);
-      t = bounded(t, setup.least.t, setup.most.t);
-      light = bounded(light, setup.least.light, setup.most.light);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const float x = right[lane] + shift, y = down[lane];
+        const std::uint32_t outside =
+            edge0.bits_at(x, y) | edge1.bits_at(x, y) | edge2.bits_at(x, y);
+        write_lane(block, lane, static_cast<std::int32_t>(outside),
+                   {depth.at(x, y), to_s.at(x, y), to_t.at(x, y), kLit ? light.at(x, y) : 255.f},
+                   tag);
+      }
     }
-    const auto tag = static_cast<std::uint32_t>(static_cast<std::int32_t>(light)) << 8 | setup.tag;
-    const std::uint32_t hit = ((outside >= 0) & (depth <= old_depth)) ? ~0u : 0;
-    block.depth[i] = chosen(hit, depth, old_depth);
-    block.s[i] = chosen(hit, s, old_s);
-    block.t[i] = chosen(hit, t, old_t);
-    block.tag[i] = chosen(hit, tag, old_tag);
+    first += kColumns;
+    if (first >= columns) break;
+    covered = window_of(columns - first, rows);  // all: they are few
   }
 }
 
-template <bool kDelicate, bool kLit>
-[[gnu::always_inline]] inline void fill_blocks(const Setup& s, RasterTarget& target) {
-  LaneSteps steps;
-  set_steps(s, steps);
-  const Values right = s.dx * kBlockSide, down = s.dy * kBlockSide;
-  Values row_start = s.start;
-  std::array<std::int64_t, 3> row_edge = s.edge;
-  for (int row = s.first_row; row <= s.last_row; ++row) {
-    target.drawn(row) = target.drawn(row).joined({s.first_column, s.last_column + 1});
-    PixelBlock* const blocks = target.row(row);
-    Values at = row_start;
-    std::array<std::int64_t, 3> edge = row_edge;
-    for (int column = s.first_column; column <= s.last_column; ++column) {
-      write_block<kDelicate, kLit>(blocks[column],
-                                   {narrowed<kDelicate>(edge[0]), narrowed<kDelicate>(edge[1]),
-                                    narrowed<kDelicate>(edge[2])},
-                                   at, steps, s);
-      at = at + right;
-      for (int k = 0; k < 3; ++k) edge[k] += std::int64_t{s.edge_dx[k]} * kBlockSide;
-    }
-    row_start = row_start + down;
-    for (int k = 0; k < 3; ++k) row_edge[k] += std::int64_t{s.edge_dy[k]} * kBlockSide;
+/// Value k of the corners of triangle `i`, the least and the largest.
+struct Limits {
+  float least, most;
+
+  Limits(const Corners& of, int k, int i, float scale, float offset) {
+    const auto [low, high] = std::minmax({of.value[0][k][i], of.value[1][k][i], of.value[2][k][i]});
+    least = low * scale + offset;
+    most = high * scale + offset;
   }
+  float bounded(float value) const {
+    const float raised = value > least ? value : least;
+    return raised < most ? raised : most;
+  }
+};
+
+/// An edge value at the first pixel of a block, narrowed to 32 bits such that all lanes keep their
+/// sign: lanes differ by at most 2 * 3 * 16 * 960,000 < 2^27.
+std::int32_t narrowed(double edge) {
+  constexpr double kLimit = 1 << 30;
+  return static_cast<std::int32_t>(std::clamp(edge, -kLimit, kLimit));
 }
 
-/// True if an edge value within the bounds of the triangle may not fit into 32 bits, or if rounding
-/// may take an interpolated value out of the range of the corners by more than the border of a
-/// picture makes up for: edges longer than 900 px, or so long and thin that the sum of the steps
-/// over the bounds, in which values grow as length / height, is off by 1/8000 of the range.
-[[gnu::always_inline]] inline bool is_delicate(const Setup& s, std::int64_t doubled_area) {
-  constexpr std::int64_t kPixel = kSubpixels * kSubpixels, kLongest = 900 * kPixel,
-                         kMost = 4096 * kPixel * kPixel;  // of length^2 / height
-  std::int64_t longest = 0;
-  for (int k = 0; k < 3; ++k)
-    longest = std::max<std::int64_t>({longest, std::abs(s.edge_dx[k]), std::abs(s.edge_dy[k])});
-  return longest > kLongest || longest * longest * longest > kMost * doubled_area;
+/// Draws any triangle.
+void fill_with_care(const Setups& s, const Corners& corners, int i, const TexelMap& map,
+                    RasterTarget& target) {
+  const Limits of_s(corners, 1, i, map.scale.x, map.offset.x),
+      of_t(corners, 2, i, map.scale.y, map.offset.y), of_light(corners, 3, i, 1, 0);
+  for (int row = s.first_row[i]; row <= s.last_row[i]; ++row)
+    for (int column = s.first_column[i]; column <= s.last_column[i]; ++column) {
+      const int right = (column - s.first_column[i]) * kBlockSide,
+                down = (row - s.first_row[i]) * kBlockSide;
+      std::array<std::int32_t, 3> edge;
+      for (int k = 0; k < 3; ++k)
+        edge[k] = narrowed(s.edge[k][i] + double{1} * s.edge_dx[k][i] * right +
+                           double{1} * s.edge_dy[k][i] * down);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        const int x = lane % kBlockSide, y = lane / kBlockSide;
+        std::int32_t outside = 0;
+        for (int k = 0; k < 3; ++k) outside |= edge[k] + s.edge_dx[k][i] * x + s.edge_dy[k][i] * y;
+        const auto value = [&](int k) {
+          return s.start[k][i] + s.dx[k][i] * static_cast<float>(right + x) +
+                 s.dy[k][i] * static_cast<float>(down + y);
+        };
+        write_lane(
+            target.row(row)[column], lane, outside,
+            {value(0), of_s.bounded(value(1)), of_t.bounded(value(2)), of_light.bounded(value(3))},
+            s.tag[i]);
+      }
+    }
 }
 
 void clear(PixelBlock& block) {
@@ -312,24 +467,21 @@ void TriangleBins::sort(const TriangleList& list, Rect region) {
 
 HANDCAST_CLONES void rasterise(const TriangleList& list, std::span<const std::uint32_t> triangles,
                                Rect region, RasterTarget& target) {
-  for (const std::uint32_t t : triangles) {
-    const std::int64_t area = list.doubled_areas[t];
-    const TriangleIndices& corner = list.triangles[t];
-    const Corner& a = list.corners[corner[0]];
-    const Corner& b = list.corners[corner[area > 0 ? 1 : 2]];
-    const Corner& c = list.corners[corner[area > 0 ? 2 : 1]];
-    Setup s;
-    if (!set_bounds(a, b, c, region, s)) continue;
-    set_edge(0, a, b, s);
-    set_edge(1, b, c, s);
-    set_edge(2, c, a, s);
-    const std::uint32_t level = level_of(a, b, c, std::abs(area), list);
-    set_values(a, b, c, std::abs(area), list.levels[level], s);
-    s.tag = tag_of(list.ids[corner[0]], shade_of(0, level));
-    if (is_delicate(s, std::abs(area)))
-      fill_blocks<true, true>(s, target);
-    else
-      list.is_lit ? fill_blocks<false, true>(s, target) : fill_blocks<false, false>(s, target);
+  Corners corners;
+  Setups s;
+  while (!triangles.empty()) {
+    const auto some = triangles.first(std::min<std::size_t>(kAtOnce, triangles.size()));
+    triangles = triangles.subspan(some.size());
+    set_up(list, some, region, corners, s);
+    for (int i = 0; i < static_cast<int>(some.size()); ++i) {
+      const Span columns{s.first_column[i], s.last_column[i] + 1};
+      for (int row = s.first_row[i]; row <= s.last_row[i]; ++row)
+        target.drawn(row) = target.drawn(row).joined(columns);
+      if (s.is_delicate[i])
+        fill_with_care(s, corners, i, list.levels[level_of(shade_of_tag(s.tag[i]))], target);
+      else
+        list.is_lit ? fill_windows<true>(s, i, target) : fill_windows<false>(s, i, target);
+    }
   }
 }
 

@@ -70,7 +70,8 @@ struct Span {
   Span within(int low, int high) const { return {std::max(x0, low), std::min(x1, high)}; }
 };
 
-constexpr int kBlockSide = 4;                    ///< width and height of a block in pixels
+constexpr int kBlockBits = 2;
+constexpr int kBlockSide = 1 << kBlockBits;      ///< width and height of a block in pixels
 constexpr int kLanes = kBlockSide * kBlockSide;  ///< pixels of a block
 
 /// 4 x 4 pixels that are tested, and later coloured, at once. The triangles of a hand are a few
@@ -104,6 +105,8 @@ class RasterTarget {
   PixelBlock* row(int block_row) { return blocks_.data() + line(block_row) * columns_; }
   const PixelBlock* row(int block_row) const { return blocks_.data() + line(block_row) * columns_; }
   /// @}
+  /// Blocks from one row of blocks to the next.
+  int columns() const { return columns_; }
   /// The columns of blocks in a row of blocks outside of which nothing was drawn.
   Span& drawn(int block_row) { return drawn_[line(block_row)]; }
 
@@ -201,7 +204,7 @@ class TriangleBins {
 };
 
 /// Draws triangles of a list into the blocks that `region` touches, which must be within the
-/// target. The nearer triangle wins; at equal depth, the later one.
+/// target and one band. The nearer triangle wins; at equal depth, the later one.
 void rasterise(const TriangleList& list, std::span<const std::uint32_t> triangles, Rect region,
                RasterTarget& target);
 

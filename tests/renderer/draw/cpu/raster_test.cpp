@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -52,12 +53,12 @@ Sheet jittered_grid(unsigned seed) {
 }
 
 /// Draws band by band into a target of the whole image.
-void draw(const TriangleList& list, RasterTarget& target) {
+void draw(const TriangleList& list, RasterTarget& target, Rect region = kWhole) {
   TriangleBins bins;
-  bins.sort(list, kWhole);
-  for (int band = 0; band * kBand < kHeight; ++band)
+  bins.sort(list, region);
+  for (int band = region.y0 / kBand; band * kBand < region.y1; ++band)
     rasterise(list, bins.of_band(band),
-              Rect{0, band * kBand, kWidth, (band + 1) * kBand}.overlap(kWhole), target);
+              Rect{region.x0, band * kBand, region.x1, (band + 1) * kBand}.overlap(region), target);
 }
 
 TEST(Raster, EveryPixelOfASheetBelongsToExactlyOneTriangle) {
@@ -122,6 +123,99 @@ TEST(Raster, OfEquallyNearTrianglesTheLaterIsSeen) {
   EXPECT_EQ(target.at(10, 10).s, 1);
 }
 
+/// What a list shows at a pixel, by the definition: the nearest of the triangles that cover it.
+struct Shown {
+  double depth = INFINITY, s = 0, t = 0, light = 0, second_depth = INFINITY;
+  std::uint32_t id = 0;
+};
+
+Shown shown_at(const TriangleList& list, int x, int y) {
+  Shown shown;
+  for (const auto& triangle : list.triangles) {
+    std::array corner{list.corners[triangle[0]], list.corners[triangle[1]],
+                      list.corners[triangle[2]]};
+    const auto cross = [](std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by) {
+      return ax * by - ay * bx;
+    };
+    const std::int64_t area = cross(corner[1].x - corner[0].x, corner[1].y - corner[0].y,
+                                    corner[2].x - corner[0].x, corner[2].y - corner[0].y);
+    if (area == 0) continue;
+    if (area < 0) std::swap(corner[1], corner[2]);
+    std::array<double, 3> weight;  // by the corner opposite to an edge
+    bool is_covered = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Corner &p = corner[(k + 1) % 3], &q = corner[(k + 2) % 3];
+      const std::int32_t dx = q.x - p.x, dy = q.y - p.y;
+      const std::int64_t inner = cross(dx, dy, 16 * x - p.x, 16 * y - p.y);
+      const bool is_top_left = dy < 0 || (dy == 0 && dx > 0);
+      is_covered &= inner > 0 || (inner == 0 && is_top_left);
+      weight[k] = static_cast<double>(inner) / static_cast<double>(std::abs(area));
+    }
+    if (!is_covered) continue;
+    const auto mean = [&](auto value) {
+      return weight[0] * value(corner[0]) + weight[1] * value(corner[1]) +
+             weight[2] * value(corner[2]);
+    };
+    const double depth = mean([](const Corner& c) { return c.depth; });
+    shown.second_depth = std::min(shown.second_depth, std::max(depth, shown.depth));
+    if (depth > shown.depth) continue;
+    shown.depth = depth;
+    shown.s = mean([](const Corner& c) { return c.u; });
+    shown.t = mean([](const Corner& c) { return c.v; });
+    shown.light = mean([](const Corner& c) { return c.light; });
+    shown.id = list.ids[triangle[0]];
+  }
+  return shown;
+}
+
+/// Triangles of all sizes, from a part of a pixel to some that reach beyond the image.
+Sheet loose_triangles(unsigned seed, float most_px) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> x(-20, kWidth + 20), y(-20, kHeight + 20),
+      aside(-most_px, most_px), unit(0, 1);
+  Sheet sheet;
+  for (std::uint16_t i = 0; i < 60; ++i) {
+    const float middle_x = x(random), middle_y = y(random);
+    for (int k = 0; k < 3; ++k)
+      sheet.corners.push_back({snapped(middle_x + aside(random)), snapped(middle_y + aside(random)),
+                               unit(random), unit(random), unit(random), 255 * unit(random)});
+    const auto first = static_cast<std::uint16_t>(3 * i);
+    sheet.triangles.push_back(
+        {first, static_cast<std::uint16_t>(first + 1), static_cast<std::uint16_t>(first + 2)});
+  }
+  return sheet;
+}
+
+TEST(Raster, DrawsWhatIsDrawnPixelByPixel) {
+  constexpr Rect kRegion{5, 3, 93, 71};
+  constexpr double kNear = 2e-4;  // slivers are steep
+  int compared = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    Sheet sheet = loose_triangles(seed, std::array{1.f, 6.f, 25.f, 150.f}[seed % 4]);
+    TriangleList list = sheet.list(Facing::both);
+    for (std::size_t i = 0; i < sheet.ids.size(); ++i)
+      sheet.ids[i] = static_cast<std::uint8_t>(1 + i / 3 % 60);
+    RasterTarget target(kWidth, kHeight);
+    draw(list, target, kRegion);
+    for (int y = kRegion.y0; y < kRegion.y1; ++y) {
+      for (int x = kRegion.x0; x < kRegion.x1; ++x) {
+        const Shown shown = shown_at(list, x, y);
+        const auto pixel = target.at(x, y);
+        ASSERT_EQ(id_of_tag(pixel.tag) != 0, shown.id != 0) << seed << ": " << x << ' ' << y;
+        if (shown.id == 0 || shown.second_depth - shown.depth < 2 * kNear) continue;
+        ++compared;
+        ASSERT_EQ(id_of_tag(pixel.tag), shown.id) << seed << ": " << x << ' ' << y;
+        ASSERT_NEAR(pixel.depth, shown.depth, kNear) << seed << ": " << x << ' ' << y;
+        ASSERT_NEAR(pixel.s, shown.s, kNear) << seed << ": " << x << ' ' << y;
+        ASSERT_NEAR(pixel.t, shown.t, kNear) << seed << ": " << x << ' ' << y;
+        ASSERT_NEAR(light_of(shade_of_tag(pixel.tag)), shown.light, 0.5 + 255 * kNear)
+            << seed << ": " << x << ' ' << y;
+      }
+    }
+  }
+  EXPECT_GT(compared, 50'000);
+}
+
 /// Rounding takes the planes of the values out of their range in triangles like these.
 TEST(Raster, TheValuesOfASliverStayInTheirRange) {
   constexpr Rect kScreen{0, 0, 1920, 1080};
@@ -136,9 +230,8 @@ TEST(Raster, TheValuesOfASliverStayInTheirRange) {
     sheet.corners = {a, b, c};
     sheet.triangles = {{0, 1, 2}};
     const TriangleList list = sheet.list(Facing::both);
-    const std::vector<std::uint32_t> first{0};
     target.start();
-    rasterise(list, first, kScreen, target);
+    draw(list, target, kScreen);
     for (int row = 0; row < kScreen.y1; ++row) {
       const Span columns = target.drawn(row / kBlockSide);
       for (int column = columns.x0 * kBlockSide;
