@@ -8,12 +8,13 @@
 namespace handcast::renderer::cpu {
 namespace {
 
-/// One row of the region: mask and drawing in, regions D (`lit`) and C (`unlit`) out.
+/// One row of the region: mask and drawing in, regions D (what is left of `surface`) and C
+/// (`unlit`) out.
 struct Sorting {
   const std::uint8_t* mask;
   SurfaceId* surface;
   std::uint32_t* colour;
-  std::uint8_t *lit, *unlit;
+  std::uint8_t* unlit;
 };
 
 /// Red, green and blue of a colour times `factor` / 256 (0..256); alpha 0.
@@ -41,7 +42,7 @@ struct RowSums {
                counted = static_cast<std::uint8_t>(i >= skipped ? 255 : 0);
     const auto lit = static_cast<std::uint8_t>(hand & light),
                unlit = static_cast<std::uint8_t>(hand & ~light);
-    row.lit[x + i] = lit;
+    row.surface[x + i] &= static_cast<SurfaceId>(hand | ~counted);
     row.unlit[x + i] = unlit;
     sums.lit[i] = static_cast<std::uint8_t>(sums.lit[i] + (lit & counted & 1));
     sums.unlit[i] = static_cast<std::uint8_t>(sums.unlit[i] + (unlit & counted & 1));
@@ -54,8 +55,8 @@ struct RowCounts {
   bool is_spilt = false;  ///< there is light outside the hand
 };
 
-/// Sorts the pixels [x0, x1) of a row into the regions. The two scratch planes may be written to
-/// the left of them: the last vector ends where the pixels do.
+/// Sorts the pixels [x0, x1) of a row into the regions. `unlit` may be written to the left of them:
+/// the last vector ends where the pixels do.
 HANDCAST_CLONES RowCounts sort_row(const Sorting row, int x0, int x1) {
   RowSums sums;
   if (x1 < kVector) {
@@ -75,12 +76,10 @@ HANDCAST_CLONES RowCounts sort_row(const Sorting row, int x0, int x1) {
   return counts;
 }
 
-/// Removes light outside the hand.
+/// Removes the colours of pixels that show nothing.
 HANDCAST_CLONES void darken_spilt(const Sorting row, int x0, int x1) {
 #pragma GCC ivdep
-  for (int x = x0; x < x1; ++x) row.surface[x] &= row.lit[x];
-#pragma GCC ivdep
-  for (int x = x0; x < x1; ++x) row.colour[x] = row.lit[x] ? row.colour[x] : 0;
+  for (int x = x0; x < x1; ++x) row.colour[x] = row.surface[x] ? row.colour[x] : 0;
 }
 
 /// The bytes that are neither 0 nor 255, as their highest bits.
@@ -101,25 +100,37 @@ bool is_uniform(const std::uint8_t* mask) {
   return any == 0 || all == ~std::uint64_t{0};
 }
 
-/// Gives the pixels [x0, x1) of a row that are hand in part the same part of their light.
-void soften_row(const std::uint8_t* mask, std::uint32_t* colour, int x0, int x1) {
+/// The colour of a pixel with the same part of its light as the part of it that is hand.
+std::uint32_t softened(std::uint32_t colour, std::uint8_t mask) {
   static const ShareTable kTable = share_table();
-  const auto soften = [&](int x) {
-    if (mask[x] == 0 || mask[x] == 255 || colour[x] == 0) return;
-    colour[x] = dimmed(colour[x], kTable[mask[x]]) | alpha_in_part(colour[x] >> 24, mask[x]) << 24;
-  };
+  if (mask == 0 || mask == 255 || colour == 0) return colour;
+  return dimmed(colour, kTable[mask]) | alpha_in_part(colour >> 24, mask) << 24;
+}
+
+/// Softens the pixels [x0, x1) of a row.
+void soften_row(const std::uint8_t* mask, std::uint32_t* colour, int x0, int x1) {
   int x = x0;
   for (; x + 8 <= x1; x += 8) {
     while (x + kSame <= x1 && is_uniform(mask + x)) x += kSame;
     if (x + 8 > x1) break;
-    for (std::uint64_t left = partial_bytes(load_eight(mask + x)); left != 0; left &= left - 1)
-      soften(x + std::countr_zero(left) / 8);
+    for (std::uint64_t left = partial_bytes(load_eight(mask + x)); left != 0; left &= left - 1) {
+      const int at = x + std::countr_zero(left) / 8;
+      colour[at] = softened(colour[at], mask[at]);
+    }
   }
-  for (; x < x1; ++x) soften(x);
+  for (; x < x1; ++x) colour[x] = softened(colour[x], mask[x]);
 }
 
 HANDCAST_CLONES void mix_patches(const Lookup& at, const float* factor, std::uint32_t* colours) {
   mix(at, factor, colours);
+}
+
+/// Asks for [x0, x1) of a row: the processor does not foresee where the next row of a region
+/// begins.
+template <class T>
+void prefetch(const T* row, int x0, int x1) {
+  constexpr int kLine = 64 / sizeof(T);
+  for (int x = x0; x < x1 + kLine - 1; x += kLine) __builtin_prefetch(row + x);
 }
 
 View<const std::uint8_t> part_of(const Plane<std::uint8_t>& plane, Rect region) {
@@ -130,14 +141,21 @@ View<const std::uint8_t> part_of(const Plane<std::uint8_t>& plane, Rect region) 
 
 FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, FrameBuffer& frame) {
   FillCounts counts;
+  unlit_rows_ = {};
   for (int y = region.y0; y < region.y1; ++y) {
-    const Sorting row{mask.row(y), frame.surface.row(y), frame.colour.row(y), lit_.row(y),
-                      unlit_.row(y)};
+    if (const int soon = y + 2; soon < region.y1) {
+      prefetch(mask.row(soon), region.x0, region.x1);
+      prefetch(frame.surface.row(soon), region.x0, region.x1);
+      prefetch(frame.colour.row(soon), frame.lit[soon].x0, frame.lit[soon].x1);
+    }
+    const Sorting row{mask.row(y), frame.surface.row(y), frame.colour.row(y), unlit_.row(y)};
     const RowCounts found = sort_row(row, region.x0, region.x1);
     const Span span = frame.lit[y].within(region.x0, region.x1);
     if (found.is_spilt && !span.empty()) darken_spilt(row, span.x0, span.x1);
+    if (!span.empty()) soften_row(row.mask, row.colour, span.x0, span.x1);
     counts.lit += found.lit;
     counts.dark += found.unlit;
+    if (found.unlit > 0) unlit_rows_ = unlit_rows_.joined({y - region.y0, y - region.y0 + 1});
   }
   return counts;
 }
@@ -145,8 +163,9 @@ FillCounts Filler::sort_pixels(View<const std::uint8_t> mask, Rect region, Frame
 void Filler::make_patches(const config::Fill& settings, Rect region,
                           std::span<const Sampler> samplers, const FrameBuffer& frame) {
   table_.set_up(settings);
-  const Rect rows = nearest_.start(part_of(lit_, region), part_of(unlit_, region), table_.reach_px);
-  for (int row = rows.y0; row < rows.y1; ++row)
+  nearest_.start(part_of(frame.surface, region), part_of(unlit_, region),
+                 {0, unlit_rows_.x0, region.width(), unlit_rows_.x1}, table_.reach_px);
+  for (int row = unlit_rows_.x0; row < unlit_rows_.x1; ++row)
     for (const NearestSeed& seed : nearest_.of_row(row)) add_patch(seed, region, samplers, frame);
 }
 
@@ -177,8 +196,8 @@ void Filler::add_patch(const NearestSeed& seed, Rect region, std::span<const Sam
                       table_.alpha[seed.squared_px]});
 }
 
-void Filler::apply_patches(std::span<const Patch> patches, std::span<const Sampler> samplers,
-                           FrameBuffer& frame) {
+void Filler::apply_patches(std::span<const Patch> patches, View<const std::uint8_t> mask,
+                           std::span<const Sampler> samplers, FrameBuffer& frame) {
   constexpr std::size_t kCount = Lookup::kCount;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const Patch& patch = patches[i];
@@ -194,13 +213,15 @@ void Filler::apply_patches(std::span<const Patch> patches, std::span<const Sampl
   for (std::size_t first = 0; first < patches.size(); first += kCount) {
     mix_patches(places_[first / kCount].at, places_[first / kCount].factor, colours.data());
     for (std::size_t i = first; i < std::min(first + kCount, patches.size()); ++i)
-      put(patches[i], colours[i - first], frame);
+      put(patches[i], colours[i - first], mask, frame);
   }
 }
 
-void Filler::put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame) {
+void Filler::put(const Patch& patch, std::uint32_t colour, View<const std::uint8_t> mask,
+                 FrameBuffer& frame) {
   frame.lit[patch.y] = frame.lit[patch.y].joined({patch.x, patch.x + 1});
-  frame.colour.row(patch.y)[patch.x] = colour | std::uint32_t{patch.alpha} << 24;
+  frame.colour.row(patch.y)[patch.x] =
+      softened(colour | std::uint32_t{patch.alpha} << 24, mask.at(patch.x, patch.y));
 }
 
 void Filler::add_surfaces(int step, FrameBuffer& frame) const {
@@ -221,13 +242,9 @@ FillCounts Filler::fill(View<const std::uint8_t> mask, const config::Fill& setti
     constexpr std::size_t kSome = std::tuple_size_v<decltype(places_)> * Lookup::kCount;
     for (std::size_t first = 0; first < patches_.size(); first += kSome)
       apply_patches(std::span(patches_).subspan(first, std::min(kSome, patches_.size() - first)),
-                    samplers, frame);
+                    mask, samplers, frame);
     counts.filled = static_cast<int>(patches_.size());
     counts.dark -= counts.filled;
-  }
-  for (int y = region.y0; y < region.y1; ++y) {
-    const Span span = frame.lit[y].within(region.x0, region.x1);
-    if (!span.empty()) soften_row(mask.row(y), frame.colour.row(y), span.x0, span.x1);
   }
   return counts;
 }

@@ -46,6 +46,11 @@ HANDCAST_CLONES void square_row(const std::int8_t* __restrict to_seed,
 /// The first pixel that is set; `count` if none is.
 int first_set(const std::uint8_t* pixels, int count) {
   int x = 0;
+  const auto any_of_32 = [&] {
+    return load_eight(pixels + x) | load_eight(pixels + x + 8) | load_eight(pixels + x + 16) |
+           load_eight(pixels + x + 24);
+  };
+  while (x + 32 <= count && any_of_32() == 0) x += 32;
   while (x + 8 <= count && load_eight(pixels + x) == 0) x += 8;
   while (x < count && pixels[x] == 0) ++x;
   return x;
@@ -158,21 +163,20 @@ NearestPixel::NearestPixel(int width, int height) {
   row_.reserve(static_cast<std::size_t>(width) + kBlock);
 }
 
-Rect NearestPixel::start(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted,
-                         int reach_px) {
+void NearestPixel::start(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted,
+                         Rect bounds, int reach_px) {
   reach_px_ = std::clamp(reach_px, 0, kLargestReach);
   wanted_ = wanted;
-  wanted_area_ = bounds_of(wanted);
-  if (wanted_area_.empty()) return {};
+  wanted_area_ = bounds;
   sweep_columns(seeds, wanted_area_.grown(reach_px_).within(wanted.width, wanted.height));
   squares_.assign(static_cast<std::size_t>(area_.width()) + kMargins, kFar);
   row_.resize(static_cast<std::size_t>(wanted_area_.width()) + kBlock);
-  return wanted_area_;
 }
 
 std::span<const NearestSeed> NearestPixel::of_row(int y) {
   const std::uint8_t* const wanted = wanted_.row(y);
-  const int first = wanted_area_.x0 + first_set(wanted + wanted_area_.x0, wanted_area_.width());
+  const auto next = [&](int x) { return x + first_set(wanted + x, wanted_area_.x1 - x); };
+  const int first = next(wanted_area_.x0);
   if (first == wanted_area_.x1) return {};
   const std::int8_t* to_seed =
       to_seed_.data() + static_cast<std::ptrdiff_t>(y - area_.y0) * to_seed_stride_;
@@ -181,10 +185,9 @@ std::span<const NearestSeed> NearestPixel::of_row(int y) {
   const int limit = reach_px_ * reach_px_;
   Block block;
   NearestSeed* out = row_.data();
-  for (int x = first; x < wanted_area_.x1; x += kBlock) {
+  for (int x = first; x < wanted_area_.x1; x = next(std::min(x + kBlock, wanted_area_.x1))) {
     alignas(64) std::array<std::uint8_t, kBlock> here{};
     std::memcpy(here.data(), wanted + x, std::min(kBlock, wanted_area_.x1 - x));
-    if (first_set(here.data(), kBlock) == kBlock) continue;
     scan_block(squares + (x - area_.x0), here.data(), reach_px_, block);
     keep_within(block, limit, here.data());
     for (int eight = 0; eight < kBlock; eight += 8)
@@ -202,7 +205,9 @@ std::span<const NearestSeed> NearestPixel::of_row(int y) {
 std::span<const NearestSeed> NearestPixel::find(View<const std::uint8_t> seeds,
                                                 View<const std::uint8_t> wanted, int reach_px) {
   all_.clear();
-  const Rect rows = start(seeds, wanted, reach_px);
+  const Rect rows = bounds_of(wanted);
+  if (rows.empty()) return {};
+  start(seeds, wanted, rows, reach_px);
   for (int y = rows.y0; y < rows.y1; ++y) {
     const auto row = of_row(y);
     all_.insert(all_.end(), row.begin(), row.end());

@@ -34,11 +34,12 @@ class NearestPixel {
   explicit NearestPixel(int width = 0, int height = 0);
 
   /// Begins a search. `seeds` and `wanted` have the same size; pixels that are not 0 are set. Only
-  /// the area around the wanted pixels is processed. Returns their bounds. Both images must stay
-  /// until the last of_row().
-  Rect start(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted, int reach_px);
-  /// The wanted pixels of a row, without those that have no seed within the reach. Valid until the
-  /// next call.
+  /// `bounds`, which contain all wanted pixels, and what is near them are processed. Both images
+  /// must stay until the last of_row().
+  void start(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted, Rect bounds,
+             int reach_px);
+  /// The wanted pixels of a row of the bounds, without those that have no seed within the reach.
+  /// Valid until the next call.
   std::span<const NearestSeed> of_row(int y);
   /// The same of all rows, from a search of its own. Valid until the next call.
   std::span<const NearestSeed> find(View<const std::uint8_t> seeds, View<const std::uint8_t> wanted,

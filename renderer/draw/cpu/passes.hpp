@@ -78,8 +78,7 @@ class Warper {
 class Filler {
  public:
   /// For drawings of the given size in pixels.
-  Filler(int width, int height)
-      : lit_(width, height), unlit_(width, height), nearest_(width, height) {
+  Filler(int width, int height) : unlit_(width, height), nearest_(width, height) {
     patches_.reserve(static_cast<std::size_t>(width) * height / 8);
   }
 
@@ -107,11 +106,13 @@ class Filler {
                     const FrameBuffer& frame);
   void add_patch(const NearestSeed& seed, Rect region, std::span<const Sampler> samplers,
                  const FrameBuffer& frame);
-  void apply_patches(std::span<const Patch> patches, std::span<const Sampler> samplers,
-                     FrameBuffer& frame);
-  static void put(const Patch& patch, std::uint32_t colour, FrameBuffer& frame);
+  void apply_patches(std::span<const Patch> patches, View<const std::uint8_t> mask,
+                     std::span<const Sampler> samplers, FrameBuffer& frame);
+  static void put(const Patch& patch, std::uint32_t colour, View<const std::uint8_t> mask,
+                  FrameBuffer& frame);
 
-  Plane<std::uint8_t> lit_, unlit_;  ///< regions D and C of the paper, 255 or 0
+  Plane<std::uint8_t> unlit_;  ///< region C of the paper, 255 or 0
+  Span unlit_rows_;            ///< outside of these rows of the region there is none of it
   NearestPixel nearest_;
   std::vector<Patch> patches_;
   /// The places of some patches, 16 at once, and their factors. All are read before the first is
