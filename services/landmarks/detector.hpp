@@ -32,6 +32,9 @@ class Detector {
   virtual Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints,
                                         Deadline deadline) = 0;
 
+  /// False: its landmarks come when they come, from elsewhere, also without new images.
+  virtual bool reads_images() const { return true; }
+
   /// Whether it uses settings that change while it is open, and uses those of `rig` from now on.
   /// @{
   virtual bool is_adjustable() const { return false; }

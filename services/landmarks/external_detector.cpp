@@ -34,6 +34,8 @@ class ExternalDetector final : public Detector {
     return found;
   }
 
+  bool reads_images() const override { return false; }
+
  private:
   service::GuestStream<msg::Landmarks> guests_;
   calib::CameraModel lens_;

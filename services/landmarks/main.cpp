@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <optional>
+#include <utility>
 
 #include "ipc/base/log.hpp"
 #include "ipc/msg/detector_note.hpp"
@@ -42,12 +44,15 @@ static void run_landmarks(service::Context& context, Viewpoint at) {
   auto hands = must(context.writer<msg::Landmarks>(config::name_at(at, "landmarks.hands")));
 
   const auto live = detector->is_adjustable() ? must(context.live_settings()) : nullptr;
+  std::optional<ipc::Sample<msg::CameraFrame>> frame;  // the newest
   context.ready();
   while (context.running()) {
     service::pass_on(live.get(), *detector);
-    const auto frame = frames.latest(Deadline::in(50ms));
-    if (!frame) {
-      context.tolerate(frame.error());
+    const bool is_needed = detector->reads_images() || !frame;
+    if (auto next = frames.latest(is_needed ? Deadline::in(50ms) : Deadline::now())) {
+      frame.emplace(std::move(*next));
+    } else if (is_needed) {
+      context.tolerate(next.error());
       continue;
     }
     if (auto ours = msg::check_calibration(**frame, context.calibration().id); !ours) {
