@@ -96,7 +96,7 @@ void resolve_contents(const Listing& listing, const std::filesystem::path& folde
 
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
   for (const auto* service : {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector",
-                              "dlp", "content", "desk", "observer", "watch"})
+                              "dlp", "content", "desk", "observer", "watch", "bridge"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,
@@ -221,6 +221,7 @@ static const Process* find_process(const Rig& rig, std::string_view service) {
   if (service == "desk") return &rig.desk.process;
   if (service == "observer") return &rig.observer.process;
   if (service == "watch") return &rig.watch.process;
+  if (service == "bridge") return &rig.bridge.process;
   return nullptr;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/sections/bridge.hpp"
 #include "config/sections/cascade.hpp"
 #include "config/sections/content.hpp"
 #include "config/sections/desk.hpp"
@@ -43,6 +44,7 @@ struct Rig {
   Twin twin;
   Observer observer;
   Watch watch;
+  Bridge bridge;
   Supervisor supervisor;
   /// @}
 };
@@ -76,6 +78,7 @@ void describe(Visitor& visitor, Rig& rig) {
                   "The digital twin, for the simulator and all back ends named twin.");
   visitor.section("observer", rig.observer, "The service that scores the light.");
   visitor.section("watch", rig.watch, "The night watch: the service that looks after the rig.");
+  visitor.section("bridge", rig.bridge, "The service that joins rigs on several computers.");
   visitor.section("supervisor", rig.supervisor, "Start, supervision and stop of the services.");
 }
 

@@ -19,9 +19,10 @@ README_LINES = 120
 DECISION_LINES = 6
 
 # What runs while there is light: neither its tools, laboratory and studies nor the drivers, of which a rig uses one or two;
-# the service that runs a stranger's program is one of them, and the night watch, which changes two settings a day.
+# the service that runs a stranger's program is one of them, the night watch, which changes two settings a day, and the bridge,
+# for shows on several computers.
 NOT_IN_THE_SHOW = re.compile(r"services/(tools|lab|studies)/|calib/solve/|supervisor/look/|"
-                             r"services/(guest|watch|camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
+                             r"services/(bridge|guest|watch|camera/(aravis|leap|v4l2)|pose/(leapc|lift|openxr|stereo)|projector/dlp|content/\w+|desk/\w+)/")
 GENERATED = ("config/REFERENCE.md", "docs/lab/", "services/lab/training/MODEL_CARD.md")
 NO_DOCUMENTS = re.compile(r"(build[^/]*|out|\.git|tests)/")
 # The header of a handcast_embed(): the build writes its source.

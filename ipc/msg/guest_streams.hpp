@@ -5,9 +5,9 @@
 namespace handcast::msg {
 
 /// The streams of programs that are not part of the rig, for the back ends `external`: CameraFrame,
-/// HandPoses and Landmarks. Pictures for the hands: see kGuestPictures. No service writes to any of
-/// them: the supervisor gives their rings to programs with the right to write, so services check
-/// what they read there (check_guest()).
+/// HandPoses and Landmarks. Pictures for the hands: see kGuestPictures. Of the services, only the
+/// bridge writes to them; the supervisor gives their rings to programs with the right to write, so
+/// services check what they read there (check_guest()).
 /// @{
 inline constexpr std::string_view kGuestImages = "guest.camera";
 inline constexpr std::string_view kSecondGuestImages = "guest.camera2";

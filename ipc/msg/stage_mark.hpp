@@ -16,7 +16,8 @@ enum class Stage : std::uint32_t {
   sample,
   detect,
   /// @}
-  watch,  ///< comparing the tracker with the calibration
+  watch,   ///< comparing the tracker with the calibration
+  bridge,  ///< a message on its way from another computer
   /// The stages inside one projector frame.
   /// @{
   predict,
@@ -46,15 +47,16 @@ enum class Stage : std::uint32_t {
 
 /// The names of the stages in reports, in the order of Stage.
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Stage::count)> kStageNames{
-    "capture",  "sample",     "detect",   "watch",    "predict", "mask",    "register",
-    "advance",  "skin",       "correct",  "draw",     "warp",    "fill",    "gpu_draw",
-    "gpu_warp", "gpu_upload", "gpu_fill", "gpu_read", "frame",   "present", "light"};
+    "capture",    "sample",   "detect",   "watch", "bridge",  "predict", "mask",     "register",
+    "advance",    "skin",     "correct",  "draw",  "warp",    "fill",    "gpu_draw", "gpu_warp",
+    "gpu_upload", "gpu_fill", "gpu_read", "frame", "present", "light"};
 
 /// The time that one stage of one frame took.
 struct StageMark {
   Stage stage = Stage::frame;  ///< what was done
   /// By stage: camera_frame.hpp, tracker_faults.hpp (sample), detector_note.hpp (detect),
-  /// drift_note.hpp (watch), rung.hpp (correct), frame_delay.hpp (frame), light_source.hpp; else 0.
+  /// drift_note.hpp (watch), bridge_note.hpp (bridge), rung.hpp (correct), frame_delay.hpp (frame),
+  /// light_source.hpp; else 0.
   std::uint32_t detail = 0;
   /// Begin and end of the stage, CLOCK_MONOTONIC.
   /// @{
@@ -67,7 +69,7 @@ struct StageMark {
 /// Published by: every service ("marks.<service>", with history).  Read by: the supervisor's
 /// recorder, the observer.
 struct StageMarks {
-  static constexpr std::string_view layout = "StageMarks/6";  ///< see type_hash()
+  static constexpr std::string_view layout = "StageMarks/7";  ///< see type_hash()
 
   Header header;               ///< frame_id and origin_ns of the frame
   MadeFrom made_from;          ///< the inputs of a projector frame; zeros in all other frames

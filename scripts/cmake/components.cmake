@@ -6,6 +6,8 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME show)
 function(handcast_component_of folder result)
   if(folder MATCHES "^services/tools/(day|devices|doctor|init|lamp|record)$")
     set(component show)  # to set it up; and what the desk starts
+  elseif(folder STREQUAL "services/bridge")
+    set(component bridge)  # it alone needs CycloneDDS
   elseif(folder MATCHES "^services/tools/|^scripts/pages/calibration")
     set(component tools)
   elseif(folder MATCHES "^services/lab/|^services/studies$|^scripts/pages/")

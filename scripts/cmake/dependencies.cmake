@@ -128,6 +128,14 @@ pkg_check_modules(openxr QUIET IMPORTED_TARGET openxr)
 handcast_found(found openxr_FOUND)
 handcast_feature(OPENXR "hand trackers of OpenXR runtimes (libopenxr-dev)" ${found})
 
+pkg_check_modules(cyclonedds QUIET IMPORTED_TARGET CycloneDDS)
+find_program(IDLC idlc)
+handcast_found(found cyclonedds_FOUND IDLC)
+handcast_feature(CYCLONEDDS "rigs on several computers, handcast-bridge (cyclonedds-dev cyclonedds-tools)" ${found})
+if(HANDCAST_WITH_CYCLONEDDS)
+  enable_language(C)  # of the types that idlc makes
+endif()
+
 find_package(prometheus-cpp QUIET)
 handcast_found(found prometheus-cpp_FOUND)
 handcast_feature(PROMETHEUS "metrics for Prometheus, handcast-exporter (prometheus-cpp-dev)" ${found})

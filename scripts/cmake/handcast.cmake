@@ -179,7 +179,9 @@ function(handcast_description program name)
     COMMAND ${CMAKE_COMMAND} -E make_directory ${folder}
     COMMAND handcast-${program} ${ARGN} --describe > ${folder}/${name}.json
     BYPRODUCTS ${folder}/${name}.json)
-  install(FILES ${folder}/${name}.json DESTINATION ${HANDCAST_INSTALL_SHAREDIR}/services)
+  file(RELATIVE_PATH source ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  handcast_component_of(${source} component)
+  install(FILES ${folder}/${name}.json DESTINATION ${HANDCAST_INSTALL_SHAREDIR}/services COMPONENT ${component})
 endfunction()
 
 set(handcast_test_options -O1)

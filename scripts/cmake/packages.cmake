@@ -34,7 +34,7 @@ handcast_package(show handcast graphics "light that stays on moving hands"
 twin of them. This package runs it, by hand or as the service handcast@RIG."
   DEPENDS "systemd | systemd-standalone-sysusers" "systemd | systemd-standalone-tmpfiles"
   RECOMMENDS handcast-tools fonts-dejavu-core libavdevice59 libegl1 libgl1-mesa-dri
-  SUGGESTS handcast-lab python3-handcast xdg-utils)
+  SUGGESTS handcast-bridge handcast-lab python3-handcast xdg-utils)
 handcast_package(tools handcast-tools graphics "light on moving hands: calibration and preview"
 "These are the tools of those who set it up: calibration, preview, templates
 for pictures, detection in files."
@@ -46,6 +46,13 @@ handcast_package(lab handcast-lab science "light on moving hands: simulation and
 reports, a gallery of its looks, studies and games with people."
   NEEDS tools library
   DEPENDS python3:any python3-jinja2 python3-matplotlib python3-opencv)
+if(HANDCAST_WITH_CYCLONEDDS)
+  set(bridge bridge)
+  handcast_package(bridge handcast-bridge graphics "light on moving hands: several computers"
+"This is the service that joins rigs on several computers, over DDS. Joints are
+also sent as messages of ROS 2."
+    NEEDS show)
+endif()
 handcast_package(library libhandcast0 libs "light on moving hands: shared library"
 "With this library programs draw on the hands, or are the camera, tracker or
 detector.")
@@ -62,7 +69,7 @@ camera, tracker or detector."
   RECOMMENDS python3-numpy)
 
 # Man pages, from what the programs print with --help.
-foreach(component show tools lab)
+foreach(component show tools lab ${bridge})
   get_property(programs GLOBAL PROPERTY handcast_programs_of_${component})
   set(targets)
   foreach(program ${programs})

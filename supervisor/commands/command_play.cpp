@@ -27,7 +27,8 @@ bool has_messages(const fs::path& folder, const std::string& stream) {
 /// The settings of a rig in which the streams of the recording in `folder` take the place of its
 /// sensors. Nobody knows the true hand of a recording, so there is no score.
 Arguments settings_for(const fs::path& folder) {
-  Arguments settings{"observer.enabled=false", "watch.enabled=false"};
+  Arguments settings{"observer.enabled=false", "watch.enabled=false", "bridge.send=[]",
+                     "bridge.receive=[]", "bridge.ros=false"};
   const auto play = [&](const std::string& sensor, const std::string& stream) {
     if (!has_messages(folder, stream)) return false;
     settings.push_back(sensor + ".backend=replay");

@@ -84,6 +84,7 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
       detectors_[std::string(service)] = msg::detector_note_in(mark.detail);
     if (mark.stage == msg::Stage::frame && frames.is_settled())
       slow_frames_.add(mark.end_ns - mark.begin_ns, msg::frame_delay_in(mark.detail));
+    if (mark.stage == msg::Stage::bridge) bridge_ = msg::bridge_note_in(mark.detail);
     if (mark.stage == msg::Stage::watch) tracker_drift_ = msg::drift_note_in(mark.detail);
     if (mark.stage != msg::Stage::correct) continue;
     for (const auto side : {msg::Side::left, msg::Side::right})

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "ipc/msg/bridge_note.hpp"
 #include "ipc/msg/detector_note.hpp"
 #include "ipc/msg/drift_note.hpp"
 #include "ipc/msg/rung.hpp"
@@ -94,6 +95,8 @@ class Ledger {
   }
   /// Where the tracker seems to be, by its newest sample.
   const msg::DriftNote& tracker_drift() const { return tracker_drift_; }
+  /// Of the newest message from another computer; empty: none has come.
+  const std::optional<msg::BridgeNote>& bridge() const { return bridge_; }
   /// What a service that detects landmarks said of itself last.
   msg::DetectorNote detector(std::string_view service) const;
 
@@ -106,6 +109,7 @@ class Ledger {
   LossCount lost_images_;
   std::array<std::uint64_t, msg::kTrackerFaults> tracker_faults_{};
   msg::DriftNote tracker_drift_;
+  std::optional<msg::BridgeNote> bridge_;
   std::map<std::string, msg::DetectorNote, std::less<>> detectors_;  ///< by service
 };
 

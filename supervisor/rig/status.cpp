@@ -62,7 +62,8 @@ ServiceFigures figures_of(const Service& service, const RigView& rig) {
   if (is_on_fallback(service, rig)) figures.instead_of = service.spec().backend;
   if (exit) figures.last_exit = exit->describe();
   figures.reason = reason_of(service);
-  if (!is_well(service) || service.spec().instance_of == "guest")  // its output is of interest
+  // The output of these is of interest.
+  if (!is_well(service) || service.spec().instance_of == "guest" || service.spec().name == "bridge")
     figures.log = service.log().last(kLastWords);
   figures.pid = service.pid();
   figures.standby_pid = service.standby_pid();
@@ -152,6 +153,8 @@ Figures figures_of(const RigView& rig) {
   for (std::size_t k = 0; k < msg::kTrackerFaults; ++k)
     figures.tracker_faults[std::string(msg::kTrackerFaultNames[k])] = ledger.tracker_faults()[k];
   figures.tracker_drift = figures_of(ledger.tracker_drift());
+  if (const auto& note = ledger.bridge())
+    figures.bridge = BridgeFigures{rounded(note->clock_error_us), note->refused};
   for (const auto& [stage, times] : ledger.stages())
     figures.stages[stage] = figures_of(times.recent(rig.now_ns));
   for (std::size_t r = 0; r < msg::kRungs; ++r)

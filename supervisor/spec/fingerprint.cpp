@@ -137,6 +137,7 @@ class Readers {
   std::string why_absent(const std::string& service) const {
     if (service == "observer" || service == "watch") return service + ".enabled is false";
     if (service == "landmarks2") return "the rig has no second camera";
+    if (service == "bridge") return "the bridge neither sends nor receives anything";
     return fmt::format("{}.backend is \"none\"", service);
   }
 

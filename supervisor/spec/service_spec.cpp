@@ -156,6 +156,7 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
   if (rig.observer.enabled)
     services.push_back({"observer", "", "", rig.observer.rate_hz, "", {"projector"}});
   if (rig.watch.enabled) services.push_back({"watch", "", "", 0});
+  if (rig.bridge.is_wanted()) services.push_back({"bridge", "", "", 0});
   if (rig.supervisor.metrics_port > 0) services.push_back({"exporter", "", "", 0});
   add_guests(rig, services);
   for (auto& service : services) {

@@ -32,7 +32,7 @@ PROGRAMS = {"handcast", "handcast-camera", "handcast-pose", "handcast-landmarks"
             "handcast-doctor", "handcast-init", "handcast-record", "handcast-calibrate", "handcast-template",
             "handcast-content", "handcast-desk", "handcast-gallery", "handcast-lamp",
             "handcast-try", "handcast-guest", "handcast-watch", "handcast-day", "handcast-export-twin", "handcast-benchmark"}
-OPTIONAL = {"handcast-dlp", "handcast-exporter", "handcast-preview", "handcast-study"}
+OPTIONAL = {"handcast-bridge", "handcast-dlp", "handcast-exporter", "handcast-preview", "handcast-study"}
 LINE = re.compile(r"frame (\d+) for ([\d.]+) ms:(?: image ([\d.]+) ms)?"
                   r"(?: pose ([\d.]+) ms)?(?: landmarks ([\d.]+) ms)? old")
 

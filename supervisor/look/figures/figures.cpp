@@ -59,6 +59,11 @@ void describe(Visitor& visit, DriftFigures& drift) {
   visit("turn_deg", drift.turn_deg);
 }
 template <class Visitor>
+void describe(Visitor& visit, BridgeFigures& bridge) {
+  visit("clock_error_us", bridge.clock_error_us);
+  visit("refused", bridge.refused);
+}
+template <class Visitor>
 void describe(Visitor& visit, StageFigures& stage) {
   visit("p50", stage.p50_us);
   visit("p99", stage.p99_us);
@@ -76,6 +81,7 @@ void describe(Visitor& visit, Figures& figures) {
   visit("lost_images", figures.lost_images);
   visit("tracker_faults", figures.tracker_faults);
   visit("tracker_drift", figures.tracker_drift);
+  visit("bridge", figures.bridge);
   visit("stage_us", figures.stages);
   visit("rungs", figures.rungs);
 }

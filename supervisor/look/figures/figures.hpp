@@ -69,6 +69,12 @@ struct DriftFigures {
   double turn_deg = 0;
 };
 
+/// What comes from another computer.
+struct BridgeFigures {
+  double clock_error_us = 0;  ///< that computer's clock is known to so much
+  std::uint64_t refused = 0;  ///< messages that were not used; 65535: or more
+};
+
 /// The time of a stage in the last ten seconds.
 struct StageFigures {
   double p50_us = 0, p99_us = 0;
@@ -88,6 +94,7 @@ struct Figures {
   std::map<std::string, std::uint64_t> lost_images;     ///< of the camera, by reason
   std::map<std::string, std::uint64_t> tracker_faults;  ///< how often each began, by kind
   std::optional<DriftFigures> tracker_drift;            ///< empty: nothing is known
+  std::optional<BridgeFigures> bridge;                  ///< empty: nothing has come
   std::map<std::string, StageFigures> stages;
   std::map<std::string, std::uint64_t> rungs;  ///< hands in drawn frames, by rung of the ladder
 };

@@ -63,6 +63,14 @@ std::string print_drift(const std::optional<DriftFigures>& drift) {
       off);
 }
 
+/// How well the other computer's clock is known. "" if nothing comes from one.
+std::string print_bridge(const std::optional<BridgeFigures>& bridge) {
+  if (!bridge) return "";
+  return fmt::format(
+      "\nbridge: times of the other computer are known to {:.3f} ms; {} messages were not used\n",
+      bridge->clock_error_us / 1000, bridge->refused);
+}
+
 /// "98.9 us", "2.34 ms".
 std::string text_of_us(double us) {
   constexpr double kMs = 1000;
@@ -147,7 +155,7 @@ std::string print_status(const Figures& figures) {
   return text + print_services(figures) + print_rings(figures) + print_slow(figures) +
          print_light(figures) + print_slow_frames(figures.slow_frames) +
          print_losses(figures.lost_images) + print_faults(figures.tracker_faults) +
-         print_drift(figures.tracker_drift) + print_stages(figures);
+         print_drift(figures.tracker_drift) + print_bridge(figures.bridge) + print_stages(figures);
 }
 
 }  // namespace handcast::supervisor

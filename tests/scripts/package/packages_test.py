@@ -28,6 +28,8 @@ from handbook.links import faults_of
 
 PATIENCE_S = 60
 PACKAGES = {"handcast", "handcast-tools", "handcast-lab", "libhandcast0", "libhandcast-dev", "python3-handcast"}
+if (REPOSITORY / "build/bin/handcast-bridge").exists():
+    PACKAGES.add("handcast-bridge")
 NEEDED = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "git")
 
 scratch = None
@@ -90,7 +92,7 @@ def skip_without(program):
 
 
 class ThePackages(unittest.TestCase):
-    def test_are_six(self):
+    def test_are_those_of_this_build(self):
         self.assertEqual(set(packages), PACKAGES)
 
     def test_are_the_same_byte_by_byte_when_they_are_packed_again(self):

@@ -140,7 +140,7 @@ class TheReport(Report):
         header = (programs.REPOSITORY / "ipc/msg/stage_mark.hpp").read_text(encoding="utf-8")
         names = re.findall(r'"(\w+)"', header.partition("kStageNames{")[2].partition("}")[0])
         frame, sensors = STAGES[0][2], STAGES[1][2]
-        self.assertEqual(names, [*sensors, "watch", *frame])
+        self.assertEqual(names, [*sensors, "watch", "bridge", *frame])
 
 
 class Figures(Report):

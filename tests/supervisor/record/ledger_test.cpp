@@ -180,6 +180,21 @@ TEST(Ledger, TheDriftOfTheTrackerIsThatOfItsNewestSample) {
   EXPECT_FALSE(ledger.tracker_drift().moved) << "started anew";
 }
 
+TEST(Ledger, WhatIsKnownOfAnotherComputerIsThatOfItsNewestMessage) {
+  Ledger ledger;
+  EXPECT_FALSE(ledger.bridge());
+  auto marks = frame_at(kOneSecond_ns);
+  marks.marks[0].stage = msg::Stage::bridge;
+  marks.marks[0].detail = msg::detail_of(msg::BridgeNote{84, 7});
+  ledger.add("bridge", marks);
+  ASSERT_TRUE(ledger.bridge());
+  EXPECT_EQ(ledger.bridge()->clock_error_us, 84);
+  EXPECT_EQ(ledger.bridge()->refused, 7u);
+  const auto most = msg::bridge_note_in(msg::detail_of(msg::BridgeNote{1e9, 1'000'000}));
+  EXPECT_EQ(most.clock_error_us, 131'070);
+  EXPECT_EQ(most.refused, 65'535u);
+}
+
 TEST(LightNote, ManyRefreshesDoNotChangeTheSource) {
   const auto note = msg::light_note_in(msg::detail_of({msg::LightSource::window, 0xffffffff}));
   ASSERT_TRUE(note);

@@ -119,13 +119,15 @@ TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
       {"dlp", {}},
       {"observer", {"projector"}},
       {"exporter", {}},
-      {"watch", {}}};
+      {"watch", {}},
+      {"bridge", {}}};
   config::Rig rig;
   rig.dlp.backend = "lightcrafter";
   rig.camera2.backend = "twin";
   rig.observer.enabled = true;
   rig.supervisor.metrics_port = 9100;
   rig.watch.enabled = true;
+  rig.bridge.ros = true;
   const auto catalogue = test::built_catalogue();
   std::vector<std::string> earlier;
   for (const auto& spec : services_of(rig, catalogue)) {

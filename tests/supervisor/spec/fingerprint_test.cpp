@@ -20,7 +20,7 @@ using testing::UnorderedElementsAreArray;
 using Paths = std::set<std::string>;
 
 const std::vector<std::string> kServices{"camera", "pose",     "landmarks", "projector", "content",
-                                         "desk",   "observer", "exporter",  "watch"};
+                                         "desk",   "observer", "exporter",  "watch",     "bridge"};
 
 /// What the programs of this build say about themselves.
 const Catalogue& built() {
@@ -196,6 +196,11 @@ TEST(Fingerprint, TheObserverDependsOnTheTruthAndOnWhereItComesFrom) {
 TEST(Fingerprint, TheNightWatchDependsOnItsSectionAndOnWhetherThereIsALamp) {
   expect_reads("watch", {}, {"watch", "projector.lamp"},
                {"watch.enabled", "watch.process.standby"});
+}
+
+TEST(Fingerprint, TheBridgeDependsOnItsSection) {
+  if (!built().contains("bridge")) GTEST_SKIP() << "this build has no bridge";
+  expect_reads("bridge", {}, {"bridge"}, {"bridge.process.standby"});
 }
 
 TEST(Fingerprint, TheExporterDependsOnItsPortAndOnWhatEveryServiceReads) {

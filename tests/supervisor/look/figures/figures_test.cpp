@@ -21,6 +21,7 @@ TEST(Figures, AreTheSameAfterTheWayThroughAnAnswer) {
     "slow_frames": {"count": 100, "least_us": 1900.5, "preempted": 60, "interrupted": 20, "page_faults": 5, "own": 15},
     "lost_images": {"missing": 3}, "tracker_faults": {"frozen": 2},
     "tracker_drift": {"moved": true, "places": 9, "across_mm": 5.5, "turn_deg": 0.25},
+    "bridge": {"clock_error_us": 84.5, "refused": 7},
     "stage_us": {"draw": {"p50": 1500.0, "p99": 2500.0, "count": 100}}, "rungs": {"hold": 7}})json");
   EXPECT_EQ(to_json(figures_in(status)), status);
 }

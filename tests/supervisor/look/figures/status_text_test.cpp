@@ -131,6 +131,15 @@ TEST(StatusText, SaysWhetherTheTrackerIsWhereTheCalibrationSays) {
               AllOf(HasSubstr("it has moved by 0.8 mm and 0.21 degrees"), HasSubstr("--correct")));
 }
 
+TEST(StatusText, SaysHowWellTheClockOfAnotherComputerIsKnown) {
+  auto status = status_with({{"bridge", nullptr}});
+  EXPECT_THAT(text_of(status), Not(HasSubstr("bridge:")));
+  status["bridge"] = {{"clock_error_us", 84.5}, {"refused", 7}};
+  EXPECT_THAT(text_of(status),
+              HasSubstr("bridge: times of the other computer are known to 0.085 ms; "
+                        "7 messages were not used"));
+}
+
 TEST(StatusText, OneThatDiesTooOftenSaysWhyHowItEndedWhenItIsTriedAgainAndItsLastWords) {
   const auto text = print_with(service({{"state", "degraded"},
                                         {"last_exit", "exit 111"},
