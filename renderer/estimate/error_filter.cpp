@@ -211,6 +211,25 @@ bool ErrorFilter::end_errors(AbruptLandmarks& abrupt) {
   return any;
 }
 
+/// A fault that was explained in turn by a joint's drift and by the detector leaves two gross
+/// errors that cancel, and that nothing tells apart. Forgets both. Returns whether there is one.
+bool ErrorFilter::end_opposite_errors() {
+  bool any = false;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const auto drift = index(error::drift_of(landmark)), seen = index(error::seen_of(landmark));
+    const auto errors = as_vector(errors_);
+    const Eigen::Vector2d seen_px = errors.segment<2>(seen);
+    const Eigen::Vector2d drift_px =
+        slopes_.block<2, 2>(drift, 2 * landmark).transpose() * errors.segment<2>(drift);
+    const double least_px = std::min(seen_px.norm(), drift_px.norm());
+    if (least_px < kHuber * sigma_px_[landmark] || (seen_px + drift_px).norm() > least_px) continue;
+    any = true;
+    end_error(seen_prior(landmark, sigma_px_[landmark]));
+    end_error({error::drift_of(landmark), 2, kDrift_m, kDrift_s});
+  }
+  return any;
+}
+
 /// Sets an error to 0, as likely as at first.
 void ErrorFilter::end_error(const ErrorPrior& prior) {
   const auto first = index(prior.first);
@@ -249,8 +268,9 @@ bool ErrorFilter::update(const calib::CameraModel& camera, const HandJoints& rep
   set_noise(seen);
   expect(camera, reported, seen);
   if (is_contradicted()) return false;
-  const bool is_freed = free_fingers(abrupt), is_ended = end_errors(abrupt);
-  if (is_freed || is_ended) expect(camera, reported, seen);
+  const bool is_freed = free_fingers(abrupt), is_ended = end_errors(abrupt),
+             is_opposite = end_opposite_errors();
+  if (is_freed || is_ended || is_opposite) expect(camera, reported, seen);
   doubt_landmarks(abrupt);
   root_.compute(expected_);
   root_.solveInPlace(residual_);

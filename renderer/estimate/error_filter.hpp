@@ -52,6 +52,7 @@ class ErrorFilter {
   bool is_contradicted() const;
   bool free_fingers(const AbruptLandmarks& abrupt);
   bool end_errors(AbruptLandmarks& abrupt);
+  bool end_opposite_errors();
   void end_error(const ErrorPrior& prior);
   void doubt_landmarks(const AbruptLandmarks& abrupt);
   void reduce_covariance();

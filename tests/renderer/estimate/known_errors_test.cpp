@@ -84,6 +84,23 @@ TEST_F(Known, AnErrorOfTheDetectorEndsAsAbruptlyAsItBegan) {
   EXPECT_LT(index_moved_m(), 0.003);
 }
 
+// Or the joint would stay where only the tracker had it.
+TEST_F(Known, ErrorsOfTrackerAndDetectorThatCancelAreForgotten) {
+  const auto see_tip_beside = [&](double beside_m, Abrupt abrupt) {
+    time_ns_ += 10'000'000;
+    Sighting sighting{time_ns_, in_camera(calibration_, pose_), seen_, {}};
+    sighting.reported.at_m[joint_of_landmark(8)].x += beside_m;
+    sighting.abrupt[8] = abrupt;
+    EXPECT_TRUE(known_.add(calibration_.camera, sighting));
+  };
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));
+  for (int i = 0; i < 60; ++i) see_tip_beside(1e-3 * i, Abrupt::neither);
+  see_tip_beside(0, Abrupt::detector);
+  EXPECT_GT(index_moved_m(), 0.03) << "what the detector is blamed for at first";
+  for (int i = 0; i < 3; ++i) see_tip_beside(0, Abrupt::neither);
+  EXPECT_LT(index_moved_m(), 0.005);
+}
+
 TEST_F(Known, ATrackerThatWasMovedContradictsUntilItIsDoubted) {
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));
   for (int i = 0; i < 100; ++i) ASSERT_FALSE(add(-0.08)) << i;
