@@ -289,7 +289,9 @@ TEST(Ladder, LandmarksThatComeLateAreNotPreferredToATrackerThatIsRight) {
 
 TEST(Ladder, OnTheLowestRungsTheTrackersJumpsAreBlendedInToo) {
   const auto calibration = rig_above_hand();
-  const auto pipeline = *Pipeline::create({}, {}, {}, calibration);
+  config::Cascade settings;
+  settings.filter.method = config::FilterMethod::offset_kalman;
+  const auto pipeline = *Pipeline::create(settings, {}, {}, calibration);
   const Image<std::uint8_t> image = image_of(calibration, {pose_of(Side::left)});
   constexpr float kShake_m = 1e-4f;
   const auto shaken_at = [&](float x_m) {

@@ -86,6 +86,13 @@ TEST(ShippedRigs, OursIsBetterThanThePapersAndThePapersThanTheTrackerAlone) {
   EXPECT_GT(baseline, 1.2 * paper);
 }
 
+/// Another person's hand, a network and the errors of a tracker: on the plain twin, whose landmarks
+/// are nearly true and whose hand is the drawn one, the paper's steps are as good.
+const std::vector<std::string> kStranger{
+    "landmarks.backend=handcast",     "twin.shape.mesh=implicit",
+    "twin.tracker.offset_mm=12",      "twin.tracker.rotation_deg=4",
+    "twin.tracker.joint_offset_mm=3", "twin.tracker.flexion_bias=0.1"};
+
 /// What each lever of ours is worth: without it, the error of the light grows by this factor.
 struct Lever {
   const char *name, *motion, *without;
@@ -95,18 +102,19 @@ class EachLever : public testing::TestWithParam<Lever> {};
 
 TEST_P(EachLever, LowersTheError) {
   const Lever lever = GetParam();
-  const auto &with = kept_run("twin", lever.motion),
-             &without = kept_run("twin", lever.motion, {lever.without});
+  auto settings = kStranger;
+  settings.emplace_back(lever.without);
+  const auto &with = kept_run("twin", lever.motion, kStranger),
+             &without = kept_run("twin", lever.motion, settings);
   EXPECT_GT(figure(without, "/lit_mm/mean"), lever.factor * figure(with, "/lit_mm/mean"));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Cascade, EachLever,
-    testing::Values(Lever{"offset_filter", "builtin:open_close", "cascade.filter.method=paper",
-                          1.05},
-                    Lever{"hindsight", "builtin:shake", "cascade.filter.hindsight=false", 1.05},
+    testing::Values(Lever{"estimate", "builtin:open_close", "cascade.filter.method=paper", 1.2},
                     Lever{"vertices", "builtin:open_close", "cascade.correct.method=grid", 1.05},
                     Lever{"bone_fit", "builtin:open_close", "cascade.skin.fit=false", 1.1},
+                    Lever{"outline", "builtin:open_close", "cascade.correct.outline=false", 1.05},
                     Lever{"registration", "builtin:shake", "cascade.register.method=none", 1.05}),
     [](const auto& test) { return std::string(test.param.name); });
 
