@@ -48,7 +48,8 @@ static void run_landmarks(service::Context& context, Viewpoint at) {
   context.ready();
   while (context.running()) {
     service::pass_on(live.get(), *detector);
-    const bool is_needed = detector->reads_images() || !frame;
+    if (detector->reads_images()) frame.reset();  // the camera needs its slot
+    const bool is_needed = !frame;
     if (auto next = frames.latest(is_needed ? Deadline::in(50ms) : Deadline::now())) {
       frame.emplace(std::move(*next));
     } else if (is_needed) {
