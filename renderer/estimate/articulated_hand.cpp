@@ -94,7 +94,7 @@ void ArticulatedHand::bend(int finger, const HandErrors& errors) {
   }
 }
 
-/// Turns, scales and shifts the hand about its wrist, then each joint.
+/// Turns, scales and shifts the hand about its wrist. Then displaces the joints by their drift.
 void ArticulatedHand::place(const HandErrors& errors) {
   const glm::dmat3 turn = rotation_by(vector_at(errors, error::kTurn));
   whole_ = std::exp(errors[error::kSize]) * turn;

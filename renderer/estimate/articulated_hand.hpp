@@ -31,7 +31,7 @@ Flexions flexions_of(const HandJoints& joints);
 class ArticulatedHand {
  public:
   /// Takes the errors from a tracker's hand: displaces its joints, spreads and bends its fingers,
-  /// then turns, scales and shifts it about its wrist.
+  /// then turns, scales and shifts it about its wrist, and displaces joints by their drift.
   ArticulatedHand(const HandJoints& reported, const HandErrors& errors);
 
   /// The joints without errors.

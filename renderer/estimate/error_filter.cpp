@@ -174,8 +174,8 @@ bool ErrorFilter::is_contradicted() const {
   return median(off) > kContradicted;
 }
 
-/// A finger that the tracker has moved abruptly, and that is far from the landmarks, may be
-/// anywhere now. Returns whether there is one.
+/// A finger that the tracker has moved abruptly, and that is far from three of its landmarks or
+/// more, may be anywhere now: fewer may be outliers. Returns whether there is one.
 bool ErrorFilter::free_fingers(const AbruptLandmarks& abrupt) {
   std::array<int, kFingers> far{};
   for (int landmark = first_landmark(0); landmark < kLandmarks; ++landmark)
