@@ -47,7 +47,8 @@ void send(fuzz::Reader& input, std::string_view stream) {
     std::memcpy(segment.data() + 4096, noise.data(), noise.size());
   } else {
     auto message = input.number<T>();
-    message.header.origin_ns += now_ns();
+    if (__builtin_add_overflow(message.header.origin_ns, now_ns(), &message.header.origin_ns))
+      return;
     ipc::Writer<T>::attach(*again())->publish(message);
   }
   const auto taken = guests.latest(Deadline::now());
