@@ -57,30 +57,24 @@ void describe(Visitor& visitor, Skin& skin) {
 /// How landmarks Q of an older image are carried to the time of the light; P are the joints of the
 /// tracker in the image (docs/method.md#filter, docs/method.md#estimate).
 enum class FilterMethod {
-  none,           ///< landmarks are not used
-  naive,          ///< Q, unchanged
-  kalman,         ///< a constant-velocity Kalman filter on Q
-  paper,          ///< Q + P_now - P_then (paper, "Moving Least Squares Deformation")
-  one_euro,       ///< a one-euro filter on the offset Q - P
-  offset_kalman,  ///< a constant-velocity Kalman filter on that offset
-  articulated,    ///< the most likely hand, by one estimate of the tracker's errors
-  ideal,          ///< the true landmarks; only in the simulator
+  none,         ///< landmarks are not used
+  naive,        ///< Q, unchanged
+  kalman,       ///< a constant-velocity Kalman filter on Q
+  paper,        ///< Q + P_now - P_then (paper, "Moving Least Squares Deformation")
+  articulated,  ///< the most likely hand, by one estimate of the tracker's errors
+  ideal,        ///< the true landmarks; only in the simulator
 };
-constexpr std::array<std::string_view, 8> words_of(FilterMethod) {
-  return {"none", "naive", "kalman", "paper", "one_euro", "offset_kalman", "articulated", "ideal"};
+constexpr std::array<std::string_view, 6> words_of(FilterMethod) {
+  return {"none", "naive", "kalman", "paper", "articulated", "ideal"};
 }
 
 /// [cascade.filter]
 struct Filter {
   FilterMethod method = FilterMethod::articulated;
-  double process = 3e3;
   double motion_process = 3e6;
   double noise_px = 1.14;
-  double one_euro_cutoff_hz = 3;
-  double one_euro_beta = 0.05;
   double blend_ms = 6;
   double blend_px = 8;
-  bool hindsight = true;
   double lost_ms = 300;
 
   bool operator==(const Filter&) const = default;  ///< compares all members
@@ -93,31 +87,21 @@ void describe(Visitor& visitor, Filter& filter) {
       "How landmarks Q of an older image are carried to the time of the light; P are the "
       "tracker's joints in the image. none: landmarks are not used. naive: Q, unchanged. "
       "kalman: a constant-velocity Kalman filter on Q, without the tracker. paper: Q + "
-      "P_now - P_then for each joint. one_euro: a one-euro filter on the offset Q - P. "
-      "offset_kalman: a constant-velocity Kalman filter on that offset. articulated: the hand "
-      "is drawn without the tracker's most likely errors, or as by offset_kalman while the "
-      "landmarks contradict the tracker. ideal: the true landmarks, which only the simulator "
-      "knows.");
-  visitor.field("process", filter.process, between(0, 1e9, "px^2/s^3"),
-                "offset_kalman: process noise, the spectral density of the offset's acceleration.");
-  visitor.field("motion_process", filter.motion_process, between(0, 1e12, "px^2/s^3"),
-                "kalman: process noise, the spectral density of a landmark's acceleration.");
+      "P_now - P_then for each joint. articulated: the hand is drawn without the tracker's most "
+      "likely errors, or as by kalman while they are not known. ideal: the true landmarks, which "
+      "only the simulator knows.");
+  visitor.field(
+      "motion_process", filter.motion_process, between(0, 1e12, "px^2/s^3"),
+      "kalman, articulated: process noise, the spectral density of a landmark's acceleration.");
   visitor.field(
       "noise_px", filter.noise_px, between(0.01, 50, "px"),
-      "kalman, offset_kalman: measurement noise, the standard deviation of a landmark per axis.");
-  visitor.field("one_euro_cutoff_hz", filter.one_euro_cutoff_hz, between(0.01, 100, "Hz"),
-                "one_euro: cutoff frequency for an offset that does not change.");
-  visitor.field("one_euro_beta", filter.one_euro_beta, between(0, 10, "1/px"),
-                "one_euro: increase of the cutoff frequency with the speed of the offset.");
+      "kalman, articulated: measurement noise, the standard deviation of a landmark per axis.");
   visitor.field("blend_ms", filter.blend_ms, between(0, 50, "ms"),
                 "Time constant with which the jump caused by a new tracker sample or detection is "
                 "blended in: larger is steadier, smaller is faster. 0: no blending.");
   visitor.field("blend_px", filter.blend_px, between(0, 100, "px"),
                 "The largest part of a jump that is blended in; the rest is shown at once, so that "
                 "fast motion is not delayed.");
-  visitor.field("hindsight", filter.hindsight,
-                "true: P at the time of the landmarks is interpolated from tracker samples that "
-                "have arrived since. false: P as it was predicted at that time.");
   visitor.field("lost_ms", filter.lost_ms, between(1, 10000, "ms"),
                 "Landmarks older than this fade out; then the tracker is used alone.");
 }
@@ -229,10 +213,8 @@ void describe(Visitor& visitor, Registration& registration) {
                 "An outline that moved further than this is rejected.");
 }
 
-/// The rung of a frame: chosen for each frame, or always the same (ipc/msg/rung.hpp,
-/// docs/method.md#ladder).
+/// How far hands are corrected: msg::Rung (docs/method.md#ladder).
 enum class RungChoice {
-  automatic,
   hold,
   predict,
   shift,
@@ -241,27 +223,20 @@ enum class RungChoice {
   landmarks,
   registered,
 };
-constexpr std::array<std::string_view, 8> words_of(RungChoice) {
-  return {"auto", "hold", "predict", "shift", "similarity", "fingers", "landmarks", "register"};
+constexpr std::array<std::string_view, 7> words_of(RungChoice) {
+  return {"hold", "predict", "shift", "similarity", "fingers", "landmarks", "register"};
 }
 
 /// [cascade.ladder]
 struct Ladder {
-  RungChoice rung = RungChoice::automatic;
-  double margin_percent = 5;
-  double dwell_ms = 50;
+  RungChoice rung = RungChoice::registered;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, Ladder& ladder) {
   visitor.field("rung", ladder.rung,
-                "How far a frame is corrected, cheapest rung first. auto: the cheapest rung whose "
-                "expected error is near the smallest. Any other value: always this rung.");
-  visitor.field(
-      "margin_percent", ladder.margin_percent, between(0, 100, "%"),
-      "auto: how much the expected error of the chosen rung may exceed the smallest one.");
-  visitor.field("dwell_ms", ladder.dwell_ms, between(0, 10000, "ms"),
-                "auto: how long a cheaper rung must have been good enough before it is chosen.");
+                "How far hands are corrected, the least first; each rung does what the one before "
+                "it does, and more. All but register are there to be compared with it.");
 }
 
 /// How light beside the hand and parts of the hand without light are treated (docs/method.md#fill).

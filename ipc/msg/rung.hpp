@@ -11,7 +11,7 @@
 namespace handcast::msg {
 
 /// The correction that one hand of one frame got, cheapest first (docs/method.md#ladder). Each rung
-/// is described in renderer/ladder/rung.hpp.
+/// is described in renderer/correct/rung.hpp.
 enum class Rung : std::uint8_t { hold, predict, shift, similarity, fingers, landmarks, registered };
 
 /// Number of rungs.

@@ -23,13 +23,9 @@ class CarryFilter : public LandmarkFilter {
 /// Q̂ = Q: the landmarks as they were seen.
 std::unique_ptr<CarryFilter> make_naive_filter();
 /// The newest offset Q - P of each point, added to P (paper, "Moving Least Squares Deformation").
-std::unique_ptr<CarryFilter> make_paper_filter(const config::Filter& settings);
+std::unique_ptr<CarryFilter> make_paper_filter();
 /// A constant-velocity Kalman filter on Q, without the tracker.
 std::unique_ptr<CarryFilter> make_kalman_filter(const config::Filter& settings);
-/// A constant-velocity Kalman filter on Q - P.
-std::unique_ptr<CarryFilter> make_offset_kalman(const config::Filter& settings);
-/// A one-euro filter on Q - P.
-std::unique_ptr<CarryFilter> make_one_euro_filter(const config::Filter& settings);
 
 /// Wraps `inner`: its correction fades out within 100 ms once the newest detection is older than
 /// lost_ms, and the jumps of its output are smoothed (JumpBlend).

@@ -65,8 +65,6 @@ std::optional<LandmarkPoints> moved_by(const LandmarkPoints& tracker,
 bool moves_with_tracker(const config::Filter& settings) {
   switch (settings.method) {
     case FilterMethod::paper:
-    case FilterMethod::one_euro:
-    case FilterMethod::offset_kalman:
     case FilterMethod::articulated:
       return true;
     default:
@@ -82,14 +80,10 @@ std::unique_ptr<LandmarkFilter> make_landmark_filter(const config::Filter& setti
     case FilterMethod::naive:
       return make_settled_filter(settings, make_naive_filter());
     case FilterMethod::paper:
-      return make_settled_filter(settings, make_paper_filter(settings));
+      return make_settled_filter(settings, make_paper_filter());
     case FilterMethod::kalman:
+    case FilterMethod::articulated:  // as long as the tracker's errors are not known
       return make_settled_filter(settings, make_kalman_filter(settings));
-    case FilterMethod::one_euro:
-      return make_settled_filter(settings, make_one_euro_filter(settings));
-    case FilterMethod::offset_kalman:
-    case FilterMethod::articulated:  // as long as there is no tracker whose errors can be known
-      return make_settled_filter(settings, make_offset_kalman(settings));
     case FilterMethod::ideal:
       if (oracle) return std::make_unique<IdealFilter>(std::move(oracle));
   }

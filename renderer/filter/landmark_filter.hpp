@@ -34,27 +34,15 @@ class LandmarkFilter {
   /// A tracker sample arrived at `now_ns`: P may jump before the next at().
   virtual void tracker_sample(std::int64_t now_ns) = 0;
 
-  /// Whether the tracker reports the hand.
-  enum class Tracker {
-    reporting,  ///< samples arrive
-    silent,  ///< no samples arrive: P is held where the hand was last seen, even if the hand moves
-  };
-  /// Sets the state of the tracker from now on. Filters that use every P alike ignore it.
-  virtual void tracker_is(Tracker) {}
-  /// P jumped although the hand did not: the offsets Q - P measured so far no longer hold. Filters
-  /// that use every P alike ignore it.
-  virtual void tracker_jumped() {}
-
   /// Q̂ for the photons at `target_ns`. `tracker`: P at that time. Empty if there is nothing to
   /// correct P with. Call it once per frame: filters remember their output.
   virtual std::optional<LandmarkPoints> at(std::int64_t now_ns, std::int64_t target_ns,
                                            const LandmarkPoints& tracker) = 0;
 };
 
-/// True if Q̂ is P plus an offset (methods paper, one_euro, offset_kalman,
-/// articulated). Such a Q̂ shares the
-/// error of P's prediction, which late registration corrects. The Q̂ of naive, kalman and ideal does
-/// not depend on P; none has no Q̂.
+/// True if the hand moves with P between detections (methods paper and articulated). Then it shares
+/// the error of P's prediction, which late registration corrects. The Q̂ of naive, kalman and ideal
+/// does not depend on P; none has no Q̂.
 bool moves_with_tracker(const config::Filter& settings);
 
 /// The filter of config::Filter::method. `oracle` is used by "ideal" only, which corrects nothing

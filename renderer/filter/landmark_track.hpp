@@ -14,10 +14,8 @@ namespace handcast::renderer {
 
 /// The landmarks of one hand at the time of the photons (T).
 struct Filtered {
-  LandmarkPoints landmarks{};  ///< Q̂, or P if nothing corrects it
-  bool has_landmarks = false;  ///< `landmarks` are Q̂
-  /// The tracker is silent, or returned fewer than two detections ago: Q̂ is computed without it.
-  bool is_alone = false;
+  LandmarkPoints landmarks{};           ///< Q̂, or P if nothing corrects it
+  bool has_landmarks = false;           ///< `landmarks` are Q̂
   bool has_news = true;                 ///< an input arrived since the last frame, so Q̂ may jump
   std::optional<std::int64_t> seen_ns;  ///< origin of the newest detection behind Q̂
 };
@@ -44,19 +42,10 @@ class LandmarkTrack {
   /// remember their output.
   Filtered filter(std::int64_t now_ns, std::int64_t target_ns, const Predicted& predicted);
 
-  /// Where the landmarks are expected at `time_ns`: P plus Q̂ - P of the last frame. Empty if there
-  /// is no P (HandTrack::recent_landmarks()).
-  std::optional<LandmarkPoints> expected_at(std::int64_t time_ns, const HandTrack& track) const;
-  /// Filtered::is_alone of the last frame.
-  bool is_alone() const { return is_alone_; }
-
  private:
   std::unique_ptr<LandmarkFilter> filter_;
-  bool is_alone_ = false, was_silent_ = false;
-  bool has_news_ = false;
-  int seen_again_ = 0;                   ///< detections since the tracker was last silent
+  bool was_silent_ = false, has_news_ = false;
   std::optional<std::int64_t> seen_ns_;  ///< origin of the newest detection
-  LandmarkPoints moved_px_{};            ///< Q̂ - P of the last frame
 };
 
 }  // namespace handcast::renderer

@@ -16,7 +16,7 @@ constexpr int kMostOutliers = 3;
 }  // namespace
 
 void PointTrack::update(std::int64_t time_ns, glm::vec2 measured_px, const Model& model) {
-  if (!known_) return start(time_ns, measured_px, model.noise_px, model);
+  if (!known_) return start(time_ns, measured_px, model);
   if (time_ns < time_ns_) return;
   advance(time_ns, model.process);
   const glm::vec2 innovation = measured_px - position_px_;
@@ -24,7 +24,7 @@ void PointTrack::update(std::int64_t time_ns, glm::vec2 measured_px, const Model
   const float limit_px =
       std::max(kOutlierSigmas * static_cast<float>(std::sqrt(innovation_variance)), kOutlier_px);
   if (glm::length(innovation) > limit_px) {
-    if (++outliers_ > kMostOutliers) start(time_ns, measured_px, model.noise_px, model);
+    if (++outliers_ > kMostOutliers) start(time_ns, measured_px, model);
     return;
   }
   outliers_ = 0;
@@ -41,13 +41,12 @@ glm::vec2 PointTrack::at(std::int64_t time_ns) const {
   return position_px_ + velocity_px_s_ * static_cast<float>(ahead_s);
 }
 
-void PointTrack::start(std::int64_t time_ns, glm::vec2 position_px, double sigma_px,
-                       const Model& model) {
+void PointTrack::start(std::int64_t time_ns, glm::vec2 position_px, const Model& model) {
   *this = PointTrack();
   known_ = true;
   time_ns_ = time_ns;
   position_px_ = position_px;
-  pp_ = sigma_px * sigma_px;
+  pp_ = model.noise_px * model.noise_px;
   vv_ = model.start_speed2;
 }
 

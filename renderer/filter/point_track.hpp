@@ -23,14 +23,12 @@ class PointTrack {
   };
   /// Adds a measurement. One that is older than the newest is ignored.
   void update(std::int64_t time_ns, glm::vec2 measured_px, const Model& model);
-  /// Restarts the track at a position with standard deviation `sigma_px`.
-  void start(std::int64_t time_ns, glm::vec2 position_px, double sigma_px, const Model& model);
-
   /// The position at `time_ns`, extrapolated by at most 60 ms. Before the newest measurement: the
   /// position at that one.
   glm::vec2 at(std::int64_t time_ns) const;
 
  private:
+  void start(std::int64_t time_ns, glm::vec2 position_px, const Model& model);
   void advance(std::int64_t time_ns, double process);
 
   bool known_ = false;

@@ -31,14 +31,6 @@ class SettledFilter final : public LandmarkFilter {
     something_new_ = true;
   }
 
-  void tracker_is(Tracker state) override {
-    something_new_ = something_new_ || state != state_;
-    state_ = state;
-    inner_->tracker_is(state);
-  }
-
-  void tracker_jumped() override { inner_->tracker_jumped(); }
-
   std::optional<LandmarkPoints> at(std::int64_t now_ns, std::int64_t target_ns,
                                    const LandmarkPoints& tracker) override {
     const auto carried = inner_->at(now_ns, target_ns, tracker);
@@ -72,7 +64,6 @@ class SettledFilter final : public LandmarkFilter {
   config::Filter settings_;
   std::unique_ptr<CarryFilter> inner_;
   std::optional<std::int64_t> newest_ns_;  ///< origin of the newest detection
-  Tracker state_ = Tracker::reporting;
   bool something_new_ = false;
   JumpBlend blend_;
 };

@@ -9,8 +9,8 @@
 #include "ipc/msg/stage_mark.hpp"
 #include "renderer/base/image.hpp"
 #include "renderer/base/landmark_points.hpp"
+#include "renderer/correct/rung.hpp"
 #include "renderer/draw/painter.hpp"
-#include "renderer/ladder/rung.hpp"
 
 namespace handcast::renderer {
 

@@ -33,9 +33,8 @@ std::string still_of(const std::string& content) {
 
 config::Registration registration_of(const config::Cascade& settings) {
   config::Registration registration = settings.registration;
-  const bool may_register = settings.ladder.rung == config::RungChoice::automatic ||
-                            settings.ladder.rung == config::RungChoice::registered;
-  if (!may_register || !moves_with_tracker(settings.filter))
+  if (settings.ladder.rung != config::RungChoice::registered ||
+      !moves_with_tracker(settings.filter))
     registration.method = config::RegisterMethod::none;
   return registration;
 }
@@ -48,8 +47,7 @@ HandPipeline::HandPipeline(Side side, const config::Cascade& settings,
       calibration_(calibration),
       states_{.motion = {.track = HandTrack(settings.predict, calibration),
                          .landmarks = LandmarkTrack(filter_of(settings), std::move(oracle)),
-                         .estimate = HandEstimate(calibration),
-                         .ladder = HandLadder(settings)},
+                         .estimate = HandEstimate(calibration)},
               .light = {},
               .shape = HandStates::Shape(std::move(surface))},
       picture_(std::move(picture)) {}
@@ -82,7 +80,6 @@ void HandPipeline::adjust(const config::Cascade& settings) {
   auto& motion = states_.motion;
   motion.track.adjust(settings.predict);
   if (is_other_filter) motion.landmarks.adjust(filter_of(settings));
-  motion.ladder.adjust(settings);
 }
 
 void HandPipeline::aim(const calib::ProjectorModel& projector) {
@@ -117,12 +114,10 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
   }
   has_sigmas_ =
       std::ranges::any_of(seen.points, [](const auto& point) { return point.sigma_px > 0; });
-  if (!motion.landmarks.is_alone()) motion.ladder.detection(motion.track, origin_ns, seen);
   motion.landmarks.detection(now_ns, origin_ns, seen, motion.track);
 }
 
-std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns,
-                                               std::optional<std::int64_t> image_ns) {
+std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns) {
   auto& [motion, light, shape] = states_;
   const auto predicted = motion.track.predict(now_ns, target_ns);
   if (!predicted) {
@@ -137,34 +132,45 @@ std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t
     light.sight.no_hand(target_ns);
     return std::nullopt;
   }
-  frame.estimated = estimated(target_ns, *predicted, filtered);
-  frame.corrected =
-      frame.estimated ? drawn_as(*frame.estimated, *predicted, filtered)
-                      : motion.ladder.take(motion.track, target_ns, image_ns, *predicted, filtered);
+  frame.corrected = corrected(target_ns, *predicted, filtered);
+  motion.offset_px = frame.corrected.offset_px();
   frame.registered.landmarks = frame.corrected.landmarks;
   return frame;
 }
 
-/// The hand without the tracker's errors. Empty if they are not known, or if the landmarks
-/// contradict the tracker.
+/// The hand without the tracker's errors. Empty if they are not known, the landmarks contradict the
+/// tracker, or it is silent.
 std::optional<ProjectedPose> HandPipeline::estimated(std::int64_t target_ns,
-                                                     const Predicted& predicted,
-                                                     const Filtered& filtered) const {
+                                                     const Predicted& predicted) const {
   const auto& estimate = states_.motion.estimate;
-  if (!estimates() || filtered.is_alone || !estimate.knows()) return std::nullopt;
+  if (!estimates() || predicted.is_silent || !estimate.knows()) return std::nullopt;
   return project(calibration_, estimate.corrected(target_ns, predicted.posed.pose));
 }
 
-/// The landmarks of a hand that is drawn in another pose than the tracker's.
-Corrected HandPipeline::drawn_as(const ProjectedPose& hand, const Predicted& predicted,
-                                 const Filtered& filtered) const {
-  const bool is_registered = settings_.ladder.rung != config::RungChoice::landmarks;
-  return {.posed = predicted.posed,
-          .landmarks = hand.landmarks,
-          .has_landmarks = true,
-          .has_news = filtered.has_news,
-          .rung = is_registered ? Rung::registered : Rung::landmarks,
-          .registered = is_registered ? 1.f : 0.f};
+/// The hand on its rung.
+Corrected HandPipeline::corrected(std::int64_t target_ns, const Predicted& predicted,
+                                  const Filtered& filtered) const {
+  Corrected hand{.posed = predicted.posed,
+                 .estimated = estimated(target_ns, predicted),
+                 .landmarks = filtered.landmarks,
+                 .has_landmarks = filtered.has_landmarks,
+                 .has_news = filtered.has_news,
+                 .rung = rung_of(settings_.ladder.rung)};
+  if (hand.estimated) {
+    hand.landmarks = hand.estimated->landmarks;
+    hand.has_landmarks = true;
+  } else {
+    hand.is_alone = estimates();
+    hand.rung = std::min(hand.rung, hand.has_landmarks ? Rung::landmarks : Rung::predict);
+  }
+  if (hand.rung >= Rung::landmarks) return hand;
+  hand.estimated.reset();
+  hand.has_landmarks = hand.has_landmarks && hand.rung >= Rung::shift;
+  const auto& track = states_.motion.track;
+  if (hand.rung == Rung::hold)
+    if (const auto newest = track.projected_at(track.newest_ns())) hand.posed = *newest;
+  hand.landmarks = on_rung(hand.rung, hand.posed.landmarks, hand.landmarks);
+  return hand;
 }
 
 HandMask::Sought HandPipeline::sought(const HandFrame& frame, std::int64_t image_ns) const {
@@ -188,8 +194,7 @@ void HandPipeline::dim(HandFrame& frame, std::int64_t target_ns) {
 }
 
 std::optional<LateRegistration::Hand> HandPipeline::to_register(const HandFrame& frame) const {
-  const bool is_needed = frame.corrected.has_landmarks && frame.corrected.registered > 0;
-  return is_needed ? std::optional(late_hand(frame)) : std::nullopt;
+  return frame.corrected.has_landmarks ? std::optional(late_hand(frame)) : std::nullopt;
 }
 
 LateRegistration::Hand HandPipeline::late_hand(const HandFrame& frame) const {
@@ -206,14 +211,12 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
     frame.registered.landmarks = late.follow(late_hand(frame), target_ns, corrected.has_news);
     return;
   }
-  frame.registered = late.correct(late_hand(frame), target_ns, corrected.registered);
-  if (corrected.registered == 1)
-    states_.motion.ladder.registered(target_ns, frame.registered.moved_now);
+  frame.registered = late.correct(late_hand(frame), target_ns);
 }
 
 void HandPipeline::skin(HandFrame& frame, float shading) {
   auto& shape = states_.shape;
-  frame.drawn = frame.estimated.value_or(frame.corrected.posed);
+  frame.drawn = frame.corrected.estimated.value_or(frame.corrected.posed);
   frame.from_px = to_projector(frame.drawn.landmarks, frame.drawn);
   frame.to_px = shape.fingers.moved(to_projector(frame.registered.landmarks, frame.drawn));
   frame.skinned =
@@ -230,18 +233,12 @@ LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px,
 }
 
 int HandPipeline::correct(HandFrame& frame) {
-  const Corrected& corrected = frame.corrected;
-  if (!corrected.has_landmarks) return 0;
+  if (!frame.corrected.has_landmarks) return 0;
   auto& shape = states_.shape;
   const Skinned& skinned = *frame.skinned;
-  if (corrected.moves < Rung::landmarks) {
-    shape.mover.move(fit_rung(corrected.moves, frame.from_px, frame.to_px), skinned.projected_px);
-  } else {
-    correct_vertices(settings_.correct, shape.surface.mesh(), frame.from_px, frame.to_px,
-                     skinned.projected_px);
-  }
+  correct_vertices(settings_.correct, shape.surface.mesh(), frame.from_px, frame.to_px,
+                   skinned.projected_px);
   if (settings_.correct.outline) shape.palm.move(frame.to_px, skinned.projected_px);
-  if (corrected.moves < Rung::fingers) return 0;
   return shape.foldover_repair.repair(skinned.seen_px, skinned.projected_px, skinned.facing_sign);
 }
 

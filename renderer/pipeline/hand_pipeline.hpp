@@ -11,11 +11,10 @@
 #include "renderer/correct/finger_outline.hpp"
 #include "renderer/correct/foldover_repair.hpp"
 #include "renderer/correct/palm_outline.hpp"
-#include "renderer/correct/rung_mover.hpp"
+#include "renderer/correct/rung.hpp"
 #include "renderer/draw/painter.hpp"
 #include "renderer/estimate/hand_estimate.hpp"
 #include "renderer/filter/landmark_track.hpp"
-#include "renderer/ladder/hand_ladder.hpp"
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/pipeline/frame.hpp"
 #include "renderer/predict/hand_track.hpp"
@@ -29,13 +28,26 @@ namespace handcast::renderer {
 /// or if Q̂ does not move with P, whose prediction late registration corrects.
 config::Registration registration_of(const config::Cascade& settings);
 
+/// One hand at the time of the photons: it is drawn in a pose and moved onto Q̂.
+struct Corrected {
+  ProjectedPose posed;                     ///< of the tracker, with P
+  std::optional<ProjectedPose> estimated;  ///< the hand without the tracker's errors
+  LandmarkPoints landmarks{};              ///< Q̂, or P if nothing corrects it
+  bool has_landmarks = false;  ///< `landmarks` are Q̂, even if the rung leaves them at P
+  bool is_alone = false;       ///< Q̂ was computed without the tracker
+  bool has_news = true;        ///< see Filtered::has_news
+  Rung rung = Rung::registered;
+
+  /// Q̂ - P.
+  LandmarkPoints offset_px() const { return difference(landmarks, posed.landmarks); }
+};
+
 /// One hand in one frame: the value that each step made.
 struct HandFrame {
-  Corrected corrected;                     ///< predict, filter and ladder
-  std::optional<ProjectedPose> estimated;  ///< estimate: the hand without the tracker's errors
-  float presence = 1;                      ///< share of its light, 0..1
-  RegisteredHand registered;               ///< register
-  ProjectedPose drawn;                     ///< skin: the pose that was skinned
+  Corrected corrected;        ///< predict, filter and estimate
+  float presence = 1;         ///< share of its light, 0..1
+  RegisteredHand registered;  ///< register
+  ProjectedPose drawn;        ///< skin: the pose that was skinned
   /// Skin: the landmarks before and after the correction, P of `drawn` and Q̂, projector px.
   /// @{
   LandmarkPoints from_px{}, to_px{};
@@ -45,12 +57,12 @@ struct HandFrame {
 
 /// What is known of one hand from one message or frame to the next.
 struct HandStates {
-  /// Where the hand is: the states of predict, filter and ladder.
+  /// Where the hand is: the states of predict, filter and estimate.
   struct Motion {
     HandTrack track;
     LandmarkTrack landmarks;
     HandEstimate estimate;
-    HandLadder ladder;
+    LandmarkPoints offset_px{};  ///< Q̂ - P of the last frame
   } motion;
   /// How much light it gets.
   struct Light {
@@ -64,13 +76,11 @@ struct HandStates {
         : surface(std::move(hand)),
           fingers(surface.mesh()),
           palm(surface.mesh()),
-          mover(surface.mesh()),
           foldover_repair(surface.mesh()) {}
 
     HandSurface surface;
     FingerOutline fingers;
     PalmOutline palm;
-    RungMover mover;
     FoldoverRepair foldover_repair;
   } shape;
 };
@@ -108,15 +118,14 @@ class HandPipeline {
     return states_.motion.track.recent_pose(time_ns);
   }
   std::optional<LandmarkPoints> expected_landmarks(std::int64_t time_ns) const {
-    return states_.motion.landmarks.expected_at(time_ns, states_.motion.track);
+    const auto points = states_.motion.track.recent_landmarks(time_ns);
+    return points ? std::optional(sum(*points, states_.motion.offset_px)) : std::nullopt;
   }
   /// @}
 
-  /// Steps predict, filter and ladder: the hand and its landmarks at `target_ns`. `image_ns`:
-  /// exposure of the image that the frame can be registered to. Empty if there is no hand, or its
-  /// light has faded out (Presence).
-  std::optional<HandFrame> predict(std::int64_t now_ns, std::int64_t target_ns,
-                                   std::optional<std::int64_t> image_ns);
+  /// Steps predict, filter and estimate: the hand and its landmarks at `target_ns`. Empty if there
+  /// is no hand, or its light has faded out (Presence).
+  std::optional<HandFrame> predict(std::int64_t now_ns, std::int64_t target_ns);
 
   /// The hand to be found in an image exposed at `image_ns`.
   HandMask::Sought sought(const HandFrame& frame, std::int64_t image_ns) const;
@@ -162,16 +171,11 @@ class HandPipeline {
   HandPipeline(Side side, const config::Cascade& settings, const calib::Calibration& calibration,
                HandSurface surface, MipChain picture, LandmarkOracle oracle);
 
-  /// True if the hand is drawn as the estimate says, on the rungs that have all landmarks.
-  bool estimates() const {
-    return settings_.filter.method == config::FilterMethod::articulated &&
-           (settings_.ladder.rung == config::RungChoice::automatic ||
-            held_rung(settings_.ladder.rung) >= Rung::landmarks);
-  }
-  std::optional<ProjectedPose> estimated(std::int64_t target_ns, const Predicted& predicted,
-                                         const Filtered& filtered) const;
-  Corrected drawn_as(const ProjectedPose& hand, const Predicted& predicted,
-                     const Filtered& filtered) const;
+  /// True if the tracker's errors are estimated.
+  bool estimates() const { return settings_.filter.method == config::FilterMethod::articulated; }
+  std::optional<ProjectedPose> estimated(std::int64_t target_ns, const Predicted& predicted) const;
+  Corrected corrected(std::int64_t target_ns, const Predicted& predicted,
+                      const Filtered& filtered) const;
   LandmarkPoints to_projector(const LandmarkPoints& camera_px, const ProjectedPose& depths) const;
   LateRegistration::Hand late_hand(const HandFrame& frame) const;
 

@@ -137,7 +137,7 @@ Pipeline::Placed Pipeline::place(std::int64_t now_ns, std::int64_t target_ns,
   if (is_drawn) {
     newest_.image_id = has_image ? camera.id : 0;
     newest_.image_ns = has_image ? camera.origin_ns : 0;
-    last_image_ = is_seen ? std::optional(ImageUse{target_ns, camera.origin_ns}) : std::nullopt;
+    was_seen_ = is_seen;
   }
 
   // If nothing is drawn, the hands are searched where the frame before had them.
@@ -146,7 +146,7 @@ Pipeline::Placed Pipeline::place(std::int64_t now_ns, std::int64_t target_ns,
   stages_.mark(Stage::predict);
   if (is_seen && is_drawn) see(camera);
   auto& hands = passed_.hands;
-  if (last_image_)
+  if (was_seen_)
     for (auto& [hand, frame] : hands) hand->dim(frame, target_ns);
   if (late_.on()) {
     for (auto& [hand, frame] : hands) hand->register_motion(frame, late_, target_ns);
@@ -173,18 +173,10 @@ Pipeline::Placed Pipeline::place(std::int64_t now_ns, std::int64_t target_ns,
   return placed;
 }
 
-/// The exposure of the image that a frame for `target_ns` can be registered to. The image is
-/// assumed to be as old as that of the last frame.
-std::optional<std::int64_t> Pipeline::expected_image_ns(std::int64_t target_ns) const {
-  if (!last_image_ || !late_.on()) return std::nullopt;
-  return target_ns - (last_image_->target_ns - last_image_->origin_ns);
-}
-
 void Pipeline::predict(std::int64_t now_ns, std::int64_t target_ns) {
   passed_.hands.clear();
   for (HandPipeline& hand : both_)
-    if (auto frame = hand.predict(now_ns, target_ns, expected_image_ns(target_ns)))
-      passed_.hands.push_back({&hand, *frame});
+    if (auto frame = hand.predict(now_ns, target_ns)) passed_.hands.push_back({&hand, *frame});
 }
 
 /// Finds the masks of the hands in an image and registers the hands in it.

@@ -143,10 +143,6 @@ class Pipeline {
     HandPipeline* hand;
     HandFrame frame;
   };
-  /// The target time of a frame and the exposure of its image.
-  struct ImageUse {
-    std::int64_t target_ns, origin_ns;
-  };
   /// A frame before it is drawn.
   struct Placed {
     Rect region;             ///< contains all light
@@ -181,7 +177,6 @@ class Pipeline {
   Rect advance_masks();
   void learn_outline(std::int64_t target_ns);
   FrameDrawing drawing_of(const Placed& placed);
-  std::optional<std::int64_t> expected_image_ns(std::int64_t target_ns) const;
   std::uint32_t rungs() const;
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
   Rect projected_bounds() const;
@@ -197,8 +192,8 @@ class Pipeline {
   LateRegistration late_;
   FramePainter painter_;
   StageClock stages_;
-  msg::MadeFrom newest_;                ///< the newest messages, and the image of the last frame
-  std::optional<ImageUse> last_image_;  ///< of the last drawn frame, if it had an image
+  msg::MadeFrom newest_;   ///< the newest messages, and the image of the last frame
+  bool was_seen_ = false;  ///< the hands were searched in the image of the last drawn frame
   Passed passed_;
 };
 

@@ -143,13 +143,13 @@ LandmarkPoints LateRegistration::missed(const Hand& hand, std::int64_t target_ns
   return moved;
 }
 
-RegisteredHand LateRegistration::correct(const Hand& hand, std::int64_t target_ns, float share) {
+RegisteredHand LateRegistration::correct(const Hand& hand, std::int64_t target_ns) {
   const auto side = static_cast<std::size_t>(hand.side);
   const std::int64_t heard_ns = hand.track->newest_ns(), seen_ns = seen_[side].time_ns;
   RegisteredHand registered;
-  const LandmarkPoints moved = share > 0 ? missed(hand, target_ns) : LandmarkPoints{};
+  const LandmarkPoints moved = missed(hand, target_ns);
   const auto placed = [&](const LandmarkPoints& tracker, std::int64_t time_ns) {
-    const float growth = share * growth_of_error(seen_ns - heard_ns, time_ns - heard_ns);
+    const float growth = growth_of_error(seen_ns - heard_ns, time_ns - heard_ns);
     LandmarkPoints points;
     for (int i = 0; i < kLandmarks; ++i)
       points[i] = tracker[i] + hand.offset_px[i] + growth * moved[i];
@@ -157,7 +157,7 @@ RegisteredHand LateRegistration::correct(const Hand& hand, std::int64_t target_n
   };
   registered.landmarks = placed(hand.tracker, target_ns);
   for (int i = 0; i < kLandmarks; ++i) {
-    registered.moved_then[i] = share * moved[i];
+    registered.moved_then[i] = moved[i];
     registered.moved_now[i] = registered.landmarks[i] - hand.tracker[i] - hand.offset_px[i];
   }
   const auto last_ns = blends_[side].last_ns(target_ns);

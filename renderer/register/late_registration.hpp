@@ -38,7 +38,7 @@ class LateRegistration {
     const HandTrack* track;    ///< its tracker samples; borrowed
     LandmarkPoints tracker;    ///< P at the target time
     LandmarkPoints offset_px;  ///< Q̂ - P
-    bool is_alone = false;     ///< see Filtered::is_alone; such a hand is not registered
+    bool is_alone = false;     ///< see Corrected::is_alone; such a hand is not registered
   };
 
   /// Without images. Uses limit_px and method of `settings`, blend_ms and blend_px of `filter`.
@@ -57,10 +57,9 @@ class LateRegistration {
   void look(const Silhouette& newest, std::span<const Hand> hands);
 
   /// The landmarks of one frame, corrected by the newest image and without the jumps of new inputs.
-  /// `share`: how much of the correction is applied, 0..1. The filter must not smooth the jumps as
-  /// well: it would hold back motion that registration already shows. Call correct() or follow()
-  /// once per frame and hand.
-  RegisteredHand correct(const Hand& hand, std::int64_t target_ns, float share = 1);
+  /// The filter must not smooth the jumps as well: it would hold back motion that registration
+  /// already shows. Call correct() or follow() once per frame and hand.
+  RegisteredHand correct(const Hand& hand, std::int64_t target_ns);
   /// The same for a hand that is_alone: its landmarks are only smoothed, also when the hand changes
   /// between correct() and follow(). `has_news`: an input arrived since the last frame.
   LandmarkPoints follow(const Hand& hand, std::int64_t target_ns, bool has_news);

@@ -70,10 +70,9 @@ TEST(ShippedRigs, PaperIsThePapersCascade) {
           "twin.detector.bias_hidden = 6", "cascade.predict.method = \"velocity\"",
           "cascade.predict.still_mm_s = 0", "cascade.skin.fit = false",
           "cascade.skin.widths = false", "cascade.filter.method = \"paper\"",
-          "cascade.filter.hindsight = false", "cascade.filter.blend_ms = 0",
-          "cascade.correct.method = \"grid\"", "cascade.correct.alpha = 0.5",
-          "cascade.correct.outline = false", "cascade.mask.advance = false",
-          "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
+          "cascade.filter.blend_ms = 0", "cascade.correct.method = \"grid\"",
+          "cascade.correct.alpha = 0.5", "cascade.correct.outline = false",
+          "cascade.mask.advance = false", "cascade.fill.reach_px = 10", "cascade.fill.fade_px = 0",
           "cascade.register.method = \"none\"", "cascade.ladder.rung = \"landmarks\""));
   const auto cascade = shipped("paper").cascade;
   EXPECT_EQ(cascade.correct.grid_columns, 21);
@@ -103,10 +102,9 @@ TEST(ShippedRigs, FramesOfOurSoftwareTakeTimesThatMissRefreshes) {
 TEST(ShippedRigs, TwinIsTheCascadeThatTheDocumentsDescribe) {
   const auto cascade = shipped("twin").cascade;
   EXPECT_EQ(cascade.filter.method, FilterMethod::articulated);
-  EXPECT_TRUE(cascade.filter.hindsight);
   EXPECT_EQ(cascade.correct.method, CorrectMethod::vertices);
   EXPECT_EQ(cascade.registration.method, RegisterMethod::mask);
-  EXPECT_EQ(cascade.ladder.rung, RungChoice::automatic);
+  EXPECT_EQ(cascade.ladder.rung, RungChoice::registered);
   EXPECT_TRUE(cascade.skin.fit);
   EXPECT_TRUE(cascade.mask.advance);
 }

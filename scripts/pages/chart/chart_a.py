@@ -77,7 +77,7 @@ def draw_field(picture, field, left_px, x, y):
         panel.line(stair_of(field), "ours", 2, dashes=(3, 2))
     labels = []
     for standing in field.standings:
-        method, is_rung = standing.method, standing.method.freedoms is not None
+        method, is_rung = standing.method, standing.method.is_rung
         panel.dot(standing.point, method.colour, 12 if method.is_ours else 7 if is_rung else 9)
         words = f"{label_of(standing)}\u2002{standing.p95_mm:.1f}"
         labels.append(Label(standing.point, words, "quiet" if is_rung else "ink", method.is_ours))

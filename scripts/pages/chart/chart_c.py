@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from pages.chart.chart import Chart
-from pages.chart.ladder import Standing, ladder_of, name_of_speed
+from pages.chart.ladder import ladder_of, name_of_speed
 from pages.chart.methods import RUNGS
 from pages.chart.picture import Area, Label, Panel, Picture, Range, range_of
 from pages.chart.table import Column, NumberTable
@@ -12,21 +12,16 @@ WIDTH_PX, HEIGHT_PX = 980, 400
 ERROR = "interior error, 95th percentile, mm"
 
 READING = (
-    "Each rung of the ladder, used for the whole run, cheapest first: the gain and the cost of more degrees of freedom. handcast uses the "
-    "cheapest rung that is good enough in each frame.")
+    "Each rung of the ladder, the least first: the gain and the cost of more degrees of freedom. The last one, with late registration, is "
+    "handcast.")
 
 
 @dataclass
 class Series:
-    """The rungs at one speed, in their order, and the gate that chooses among them."""
+    """The rungs at one speed, in their order."""
     speed: float
     colour: str
     rungs: list
-    gate: Standing
-
-    def standings(self):
-        """The rungs and the gate."""
-        return self.rungs + [self.gate] * bool(self.gate)
 
 
 def series_of(ladder):
@@ -36,7 +31,7 @@ def series_of(ladder):
         standings = {standing.method.variant: standing for standing in ladder.at(speed)}
         rungs = [standings[rung.variant] for rung in RUNGS if rung.variant in standings]
         if rungs:
-            series.append(Series(speed, "fast" if series else "ours", rungs, standings.get("handcast")))
+            series.append(Series(speed, "fast" if series else "ours", rungs))
     return series
 
 
@@ -50,7 +45,7 @@ def name_rungs(panel):
 
 
 def draw_freedoms(picture, series, y):
-    """The error over the rungs. The error of the gate is a dashed horizontal line."""
+    """The error over the rungs."""
     x = Range(-0.4, len(RUNGS) - 0.6)
     panel = Panel(picture, Area(44, 62, 470, HEIGHT_PX - 62), x, y)
     panel.title("by degrees of freedom", -34, -38)
@@ -62,16 +57,12 @@ def draw_freedoms(picture, series, y):
         points = [(RUNGS.index(standing.method), standing.p95_mm) for standing in each.rungs]
         panel.line(points, each.colour, dots=6.5)
         labels.append(Label(points[-1], name_of_speed(each.speed), each.colour))
-        if each.gate:
-            panel.line([(x.low, each.gate.p95_mm), (x.high, each.gate.p95_mm)], each.colour, 1.5, dashes=(2, 2))
-            labels.append(Label((x.high, each.gate.p95_mm), "handcast, gated", each.colour, True))
     panel.label_beside(labels)
 
 
 def draw_times(picture, series, y):
-    """The error over the time of a frame. The gate is the large point. Only the rungs of the last series have labels: its points are the
-    furthest apart."""
-    times_us = [standing.frame_us for each in series for standing in each.standings() if standing.frame_us]
+    """The error over the time of a frame. Only the rungs of the last series have labels: its points are the furthest apart."""
+    times_us = [standing.frame_us for each in series for standing in each.rungs if standing.frame_us]
     if not times_us:
         return
     x = Range(0.93 * min(times_us), 1.05 * max(times_us))
@@ -86,16 +77,12 @@ def draw_times(picture, series, y):
         if timed:
             panel.line([point for _, point in timed], each.colour, dots=6.5)
         labels += [Label(point, label, each.colour) for label, point in timed] if each is series[-1] else []
-        if each.gate and each.gate.frame_us:
-            gate = (each.gate.frame_us, each.gate.p95_mm)
-            panel.dot(gate, each.colour, 12)
-            labels.append(Label(gate, "handcast", each.colour, True))
     panel.label_beside(labels, 15)
 
 
 def draw(series, colours):
     """The picture: both panels with one y axis."""
-    y = range_of([standing.p95_mm for each in series for standing in each.standings()], True)
+    y = range_of([standing.p95_mm for each in series for standing in each.rungs], True)
     picture = Picture(WIDTH_PX, HEIGHT_PX, colours)
     draw_freedoms(picture, series, y)
     draw_times(picture, series, y)
@@ -113,9 +100,8 @@ def table_of(series, timed_alone):
          Column("interior_mm_mean", "interior mean, mm"), Column("interior_mm_p95", "p95, mm"), Column("jitter_px", "jitter, px"),
          Column("frame_us_p50", "frame, µs p50", 0, True)])
     for each in series:
-        for standing in each.standings():
-            freedoms = standing.method.freedoms
-            table.rows.append([name_of_speed(each.speed), standing.method.label, "chosen per frame" if freedoms is None else freedoms,
+        for standing in each.rungs:
+            table.rows.append([name_of_speed(each.speed), standing.method.label, standing.method.freedoms,
                                standing.mean_mm, standing.p95_mm, standing.jitter_px, standing.frame_us])
     return table
 

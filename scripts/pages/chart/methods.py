@@ -17,8 +17,14 @@ class Method:
         """True for the method that all others are compared with."""
         return self.variant == "handcast"
 
+    @property
+    def is_rung(self):
+        """True for a rung below handcast."""
+        return self.freedoms is not None and not self.is_ours
 
-# The rungs of the ladder (`docs/method.md#ladder`), cheapest first. 21 landmarks have 42 degrees of freedom; registration adds 3 + 2 x 5.
+
+# The rungs of the ladder (`docs/method.md#ladder`), the least first. 21 landmarks have 42 degrees of freedom; registration adds 3 + 2 x 5.
+# The last one is handcast itself.
 RUNGS = (
     Method("hold", "hold", "ours", 0),
     Method("predict", "predict", "ours", 0),
@@ -26,14 +32,13 @@ RUNGS = (
     Method("similarity", "similarity", "ours", 4),
     Method("fingers", "per finger", "ours", 14),
     Method("landmarks", "landmarks", "ours", 42),
-    Method("register", "register", "ours", 55),
+    Method("handcast", "handcast", "ours", 55),
 )
 
 OTHERS = (
     Method("baseline", "baseline", "baseline"),
     Method("paper", "paper as published", "cascade"),
     Method("paper_at_our_speed", "paper at our speed", "cascade"),
-    Method("handcast", "handcast", "ours"),
     Method("ideal", "ideal landmarks", "quiet"),
     Method("handcast_network", "with our network", "fast", detects=True),
     Method("mediapipe", "with MediaPipe", "fast", detects=True),

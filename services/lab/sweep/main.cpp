@@ -31,7 +31,7 @@ constexpr int kExitStopped = 130;  ///< as a shell names the end of a program by
 const char* const kFooter = R"(A plan is a TOML file. The paths in it are relative to the file.
   rig = "../rigs/twin.toml"    seconds = 5    warm_up_s = 0.5    draw_every = 24 (or draw_hz = 30)    joints_only = false
   [settings]    settings of all runs, e.g. twin.tracker.age_ms = 15; settings_from = "FILE.toml": a file of such settings
-  [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "one_euro"; with from = ["NAME"], it has
+  [[variant]]   a name with its own rig and settings, e.g. settings.cascade.filter.method = "paper"; with from = ["NAME"], it has
                 the settings of variants above, too, and the rig of the first; with landmarks = "DIR" or poses = "DIR", the results
                 of another method, a file for each case: DIR/000.csv or .npy and so on
   [grid]        lists of values, e.g. twin.speed = [1, 2, 3]; all combinations are run. Several [[grid]] are run one after the other

@@ -50,11 +50,11 @@ struct Variant {
 ///     [settings]                       # of all runs
 ///     twin.tracker.age_ms = 15
 ///     [[variant]]                      # without any, the rig is the only variant
-///     name = "one_euro"
-///     settings.cascade.filter.method = "one_euro"
+///     name = "paper"
+///     settings.cascade.filter.method = "paper"
 ///     [[variant]]
-///     name = "one_euro_held"
-///     from = ["one_euro"]              # the settings of variants above, and the rig of the first
+///     name = "paper_held"
+///     from = ["paper"]              # the settings of variants above, and the rig of the first
 ///                                      # of them; the last count most, and its own before all
 ///     settings.cascade.predict.method = "hold"
 ///     [[variant]]

@@ -38,7 +38,7 @@ Result<Expansion> expand(const Plan& plan);
 /// The rig of one run. Errors: bad_config (settings that exclude each other).
 Result<config::Rig> rig_of(const Plan& plan, const Run& run);
 
-/// Prints the variant and the axes of a run: "one_euro, twin.speed=2".
+/// Prints the variant and the axes of a run: "paper, twin.speed=2".
 std::string describe_run(const Plan& plan, const Run& run);
 
 /// The number of the case of a run: of the same settings of the grids, all variants have the same.

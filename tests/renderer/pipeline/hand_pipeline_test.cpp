@@ -18,8 +18,8 @@ namespace {
 /// old and right. Tests set the faults.
 class Rig {
  public:
-  explicit Rig(config::FilterMethod method = config::FilterMethod::offset_kalman)
-      : hand_(*HandPipeline::load(Side::left, on_landmarks(method), {.left = "builtin:white"}, {},
+  Rig()
+      : hand_(*HandPipeline::load(Side::left, on_landmarks(), {.left = "builtin:white"}, {},
                                   calibration_, {})) {}
 
   std::function<glm::vec3(std::int64_t ms)> way = [](std::int64_t ms) {
@@ -49,7 +49,7 @@ class Rig {
             landmarks_of(calibration_, seen_ms * kMs, pose_of(Side::left, way(seen_ms)), {0, 0});
         hand_.push(ms * kMs, seen_ms * kMs, seen.hands[0]);
       }
-      each(ms, hand_.predict(ms * kMs, (ms + 4) * kMs, std::nullopt));
+      each(ms, hand_.predict(ms * kMs, (ms + 4) * kMs));
     }
   }
 
@@ -72,10 +72,9 @@ class Rig {
   }
 
  private:
-  /// Without late registration, so the filter smooths the jumps.
-  static config::Cascade on_landmarks(config::FilterMethod method) {
+  /// Without late registration, which needs images.
+  static config::Cascade on_landmarks() {
     config::Cascade settings;
-    settings.filter.method = method;
     settings.ladder.rung = config::RungChoice::landmarks;
     return settings;
   }
@@ -85,28 +84,19 @@ class Rig {
   HandPipeline hand_;
 };
 
-/// Both ways to carry landmarks to the light that follow the tracker.
-class Followed : public ::testing::TestWithParam<config::FilterMethod> {};
-INSTANTIATE_TEST_SUITE_P(Methods, Followed,
-                         ::testing::Values(config::FilterMethod::offset_kalman,
-                                           config::FilterMethod::articulated),
-                         [](const auto& each) {
-                           return std::string(words_of(each.param)[int(each.param)]);
-                         });
+TEST(HandPipeline, AHandThatIsTrackedAndSeenIsExact) { EXPECT_LT(Rig().worst_px(600), 3); }
 
-TEST_P(Followed, AHandThatIsTrackedAndSeenIsExact) { EXPECT_LT(Rig(GetParam()).worst_px(600), 3); }
-
-TEST_P(Followed, ATrackerThatReplacesItsHandDoesNotMoveTheLight) {
-  Rig rig(GetParam());
+TEST(HandPipeline, ATrackerThatReplacesItsHandDoesNotMoveTheLight) {
+  Rig rig;
   rig.tracker = [](std::int64_t ms) {
     return glm::vec3(ms < 400 ? 0 : 0.05f, 0, ms < 400 ? 0 : -0.03f);
   };
   EXPECT_LT(rig.worst_px(700), 6);
 }
 
-TEST_P(Followed, AWildSampleOfTheTrackerDoesNotMoveTheLight) {
+TEST(HandPipeline, AWildSampleOfTheTrackerDoesNotMoveTheLight) {
   for (const float far_m : {0.03f, 0.05f, 0.2f}) {
-    Rig rig(GetParam());
+    Rig rig;
     rig.tracker = [far_m](std::int64_t ms) {
       return glm::vec3(ms >= 400 && ms < 409 ? far_m : 0, 0, 0);
     };
@@ -114,22 +104,22 @@ TEST_P(Followed, AWildSampleOfTheTrackerDoesNotMoveTheLight) {
   }
 }
 
-TEST_P(Followed, AFrozenTrackerIsNotFollowed) {
-  Rig rig(GetParam());
+TEST(HandPipeline, AFrozenTrackerIsNotFollowed) {
+  Rig rig;
   rig.sampled = [](std::int64_t ms) { return ms >= 405 && ms < 700 ? 396 : ms; };
   EXPECT_LT(rig.worst_px(1000), 8);
 }
 
-TEST_P(Followed, ATrackerThatStandsStillBesideAMovingHandIsNotBelieved) {
-  Rig rig(GetParam());
+TEST(HandPipeline, ATrackerThatStandsStillBesideAMovingHandIsNotBelieved) {
+  Rig rig;
   rig.sampled = [](std::int64_t ms) { return ms >= 405 && ms < 700 ? 396 : ms; };
   // No two samples are the same.
   rig.tracker = [](std::int64_t ms) { return glm::vec3(0, 1e-5f * static_cast<float>(ms % 7), 0); };
   EXPECT_LT(rig.worst_px(1000), 60);
 }
 
-TEST_P(Followed, WhileTheTrackerIsSilentTheLandmarksGoOnAlone) {
-  Rig rig(GetParam());
+TEST(HandPipeline, WhileTheTrackerIsSilentTheLandmarksGoOnAlone) {
+  Rig rig;
   rig.tracker = [](std::int64_t ms) {
     return ms >= 400 && ms < 700 ? std::nullopt : std::optional(glm::vec3(0));
   };
@@ -147,8 +137,8 @@ TEST_P(Followed, WhileTheTrackerIsSilentTheLandmarksGoOnAlone) {
   EXPECT_TRUE(was_alone);
 }
 
-TEST_P(Followed, WhenTrackerAndDetectorAreLostTheLightStaysAndFades) {
-  Rig rig(GetParam());
+TEST(HandPipeline, WhenTrackerAndDetectorAreLostTheLightStaysAndFades) {
+  Rig rig;
   rig.way = [](std::int64_t) { return glm::vec3(0); };
   rig.tracker = [](std::int64_t ms) {
     return ms >= 400 ? std::nullopt : std::optional(glm::vec3(0));
@@ -214,7 +204,7 @@ Drawn drawn(float true_deg, float reported_deg, config::FilterMethod method) {
     if (ms % 9 == 0) hand.push(ms * kMs, ms * kMs, pose_with(reported_deg));
     if (ms % 16 == 0) hand.push(ms * kMs, ms * kMs, seen);
   }
-  auto frame = *hand.predict(400 * kMs, 404 * kMs, std::nullopt);
+  auto frame = *hand.predict(400 * kMs, 404 * kMs);
   hand.skin(frame, 0);
   const auto& skin_px = frame.skinned->seen_px;
   return {frame.drawn.landmarks, {skin_px.begin(), skin_px.end()}};
@@ -236,8 +226,8 @@ float skin_off_px(const Drawn& a, const Drawn& b) {
 
 TEST(HandPipeline, FingersAreDrawnAsBentAsTheLandmarksShow) {
   using config::FilterMethod;
-  const auto truth = drawn(50, 50, FilterMethod::offset_kalman),
-             straight = drawn(50, 38, FilterMethod::offset_kalman),
+  const auto truth = drawn(50, 50, FilterMethod::paper),
+             straight = drawn(50, 38, FilterMethod::paper),
              bent = drawn(50, 38, FilterMethod::articulated);
   EXPECT_GT(tips_off_px(straight, truth), 10);
   EXPECT_LT(tips_off_px(bent, truth), 0.4f * tips_off_px(straight, truth));

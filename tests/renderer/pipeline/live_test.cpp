@@ -90,7 +90,7 @@ TEST(LiveSettings, APipelineThatIsAdjustedDrawsAsOneThatWasMadeSo) {
         rig = before;
       }
     }
-  EXPECT_GT(live, 30);
+  EXPECT_GT(live, 25);
   // Settings of methods that are not chosen, and of hands that this one is not.
   EXPECT_LT(without_effect.size(), 27u) << ::testing::PrintToString(without_effect);
 }

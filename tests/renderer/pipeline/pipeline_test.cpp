@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "config/settings/choice.hpp"
 #include "renderer/pipeline/projection.hpp"
 #include "tests/renderer/pipeline/driven_pipeline.hpp"
 
@@ -270,6 +273,31 @@ TEST(Pipeline, EveryStageIsMarkedInOrder) {
                                   Stage::correct, Stage::advance, Stage::draw, Stage::warp,
                                   Stage::fill, Stage::frame));
   EXPECT_EQ(frame.stages.back().begin_ns, frame.stages.front().begin_ns);
+}
+
+TEST(Pipeline, TheRungThatIsSetIsDrawnAndMarked) {
+  const auto calibration = rig_above_hand();
+  using enum config::RungChoice;
+  for (const config::RungChoice rung : {hold, similarity, landmarks}) {
+    config::Cascade settings;
+    settings.ladder.rung = rung;
+    const auto pipeline = *Pipeline::create(settings, {}, {}, calibration);
+    for (std::int64_t t = 0; t <= 100 * kMs; t += kMs) {
+      if (t % (9 * kMs) == 0) pipeline->push(t, poses_of(t, {pose_of(Side::left)}));
+      if (t % (16 * kMs) == 0)
+        pipeline->push(t, landmarks_of(calibration, t, pose_of(Side::left), {6, 0}));
+      pipeline->track(t, t + 4 * kMs);
+    }
+    const Frame frame = pipeline->render(101 * kMs, 105 * kMs, {});
+    ASSERT_EQ(frame.hands.size(), 1u);
+    const auto& hand = frame.hands[0];
+    EXPECT_EQ(hand.rung, rung_of(rung));
+    EXPECT_NEAR(hand.corrected[9].x - hand.tracker[9].x, hand.rung < Rung::shift ? 0 : 6, 0.5f)
+        << config::word_of(rung);
+    const auto mark = std::ranges::find(frame.stages, msg::Stage::correct, &msg::StageMark::stage);
+    ASSERT_NE(mark, frame.stages.end());
+    EXPECT_EQ(msg::rung_in(mark->detail, Side::left), hand.rung);
+  }
 }
 
 TEST(Pipeline, ShadingDarkensWhatTurnsAway) {

@@ -231,8 +231,7 @@ class AllCharts(Drawn):
         self.assertIn("tracker age,ms,20,15,\n", self.text_of("chart_b_breakdown.csv"))
         self.assertIn('"tracker silent, 200 ms",for a moment,handcast,30,not within the run,yes,10', self.text_of("chart_b_faults.csv"))
         numbers = self.text_of("chart_c.csv").splitlines()
-        for row in ("natural speed,hold,0,7,14,,700", "natural speed,register,55,1,2,,1300",
-                    "natural speed,handcast,chosen per frame,1,2.1,,1000"):
+        for row in ("natural speed,hold,0,7,14,,700", "natural speed,handcast,55,1,2.1,,1000"):
             self.assertIn(row, numbers)
         self.assertNotIn("paper", self.text_of("chart_c.csv"))
 

@@ -18,7 +18,6 @@ def write_ladder(folder):
         rows += [f"paper,builtin:wave,{speed},8.9,2,{4.0 * speed},1900,",
                  f"hold,builtin:wave,{speed},6.1,7,{14.0 * speed},700,",
                  f"shift,builtin:wave,{speed},6.3,3,{5.0 * speed},760,",
-                 f"register,builtin:wave,{speed},7,1,{2.0 * speed},1300,",
                  f"handcast,builtin:wave,{speed},6.8,1,{2.1 * speed},1000,"]
     columns = "twin.motion,twin.speed,motion_to_photon_ms,interior_mm_mean,interior_mm_p95,frame_us_p50"
     return write_sweep(folder, "ladder", columns, rows)

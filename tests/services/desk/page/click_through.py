@@ -174,7 +174,7 @@ def check_others(tab):
         tab.wait("document.getElementById('toast').textContent.includes('on both hands')", "a look")
     tab.part("services")
     tab.wait("document.querySelectorAll('.service').length === 6", "the services")
-    tab.wait("/register 9\\d %, hold/.test(document.getElementById('facts').textContent)", "the rungs of the gate")
+    tab.wait("/register 9\\d %, hold/.test(document.getElementById('facts').textContent)", "the rungs")
     tab.click("[aria-label='Restart pose']")
     tab.wait("document.getElementById('toast').textContent === 'pose is ready again'", "a restart")
 

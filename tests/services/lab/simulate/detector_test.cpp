@@ -98,13 +98,13 @@ Outcome outcome_of(const std::string& rung, const twin::Twin& world, SensorFeed&
 TEST(SimulatedDetector, OneThatNeverFindsAnythingLeavesTheTrackersLight) {
   const auto world = twin_of(rig_with({"twin.motion=builtin:wave"}));
   const auto alone = outcome_of("predict", *world, *make_twin_feed(*world));
-  const auto seeing = outcome_of("auto", *world, *make_twin_feed(*world));
+  const auto seeing = outcome_of("register", *world, *make_twin_feed(*world));
   ASSERT_GT(alone.hands, 100);
   EXPECT_GT(seeing.with_landmarks, seeing.hands / 2);
   EXPECT_LT(seeing.error_px, alone.error_px / 3);
   for (const bool can_use_the_frame : {true, false}) {
     const auto blind = outcome_of(
-        "auto", *world, *make_twin_feed(*world, std::make_unique<Blind>(can_use_the_frame)));
+        "register", *world, *make_twin_feed(*world, std::make_unique<Blind>(can_use_the_frame)));
     EXPECT_EQ(blind.hands, alone.hands);
     EXPECT_EQ(blind.with_landmarks, 0);
     EXPECT_NEAR(blind.error_px, alone.error_px, 0.1 * alone.error_px);

@@ -218,19 +218,19 @@ TEST(Plan, AMotionThatIsNotThereIsNoFaultOfThePlanButNamed) {
 
 TEST(Plan, EveryFaultIsNamedWithItsLineAtOnce) {
   const auto fault = fault_of(
-      "secnds = 3\n"                                                    // line 2, after the rig
-      "[settings]\n"                                                    //
-      "cascade.filter.methd = \"paper\"\n"                              // 4
-      "[[variant]]\n"                                                   //
-      "name = \"a\"\n"                                                  //
-      "[[variant]]\n"                                                   // 7
-      "name = \"a\"\n"                                                  //
-      "settings.projector.rate_hz = \"fast\"\n"                         // 9
-      "[grid]\n"                                                        //
-      "twin.speed = 2\n"                                                // 11
-      "twin.seed = [1,\n"                                               //
-      "  -4]\n"                                                         // 13
-      "cascade.filter.method = [\"one_euro\", \"offset_kallman\"]\n");  // 14
+      "secnds = 3\n"                                          // line 2, after the rig
+      "[settings]\n"                                          //
+      "cascade.filter.methd = \"paper\"\n"                    // 4
+      "[[variant]]\n"                                         //
+      "name = \"a\"\n"                                        //
+      "[[variant]]\n"                                         // 7
+      "name = \"a\"\n"                                        //
+      "settings.projector.rate_hz = \"fast\"\n"               // 9
+      "[grid]\n"                                              //
+      "twin.speed = 2\n"                                      // 11
+      "twin.seed = [1,\n"                                     //
+      "  -4]\n"                                               // 13
+      "cascade.filter.method = [\"paper\", \"kallman\"]\n");  // 14
   EXPECT_THAT(
       fault,
       HasSubstr("/plans/test.toml:2: secnds: there is no such setting (did you mean 'seconds'?)"));
@@ -241,7 +241,7 @@ TEST(Plan, EveryFaultIsNamedWithItsLineAtOnce) {
   EXPECT_THAT(fault, HasSubstr(":9: projector.rate_hz: must be a number"));
   EXPECT_THAT(fault, HasSubstr(":11: twin.speed: must be a list"));
   EXPECT_THAT(fault, HasSubstr(":13: twin.seed: -4 is outside"));
-  EXPECT_THAT(fault, HasSubstr(":14: cascade.filter.method: 'offset_kallman' is not"));
+  EXPECT_THAT(fault, HasSubstr(":14: cascade.filter.method: 'kallman' is not"));
 }
 
 TEST(Plan, ASectionsNameThatIsMistypedIsSuggested) {

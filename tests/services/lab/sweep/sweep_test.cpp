@@ -24,7 +24,7 @@ warm_up_s = 0.05
 [settings]
 landmarks.backend = "twin"
 [grid]
-cascade.filter.method = ["paper", "offset_kalman"]
+cascade.filter.method = ["paper", "kalman"]
 twin.seed = [1, 2, 3]
 )";
 
@@ -278,7 +278,7 @@ TEST_F(SweepProgramTest, ListsAndRunsNothing) {
   ASSERT_EQ(handcast(file("tiny.toml").string() + " --list --shard 1/4"), 0);
   EXPECT_EQ(said(),
             "     1  twin, cascade.filter.method=paper, twin.seed=2\n     5  twin, "
-            "cascade.filter.method=offset_kalman, twin.seed=3\n");
+            "cascade.filter.method=kalman, twin.seed=3\n");
 }
 
 TEST_F(SweepProgramTest, ExitsWith1WhereARunFailedAndWith100WhereThePlanIsWrong) {
