@@ -44,7 +44,8 @@ void describe(Visitor& visitor, Supervisor& supervisor) {
                 "How long a service, or the whole rig, may take to stop before it is killed.");
   visitor.field("silent_s", supervisor.silent_s, between(0.2, 300, "s"),
                 "A service without a heartbeat for this time is killed and replaced; after a "
-                "quarter of it if the service is stopped, after half if it sleeps.");
+                "quarter of it if the service is stopped, after half if it sleeps. Until it is "
+                "ready, waiting for a processor or the disk does not count.");
   visitor.field("history_s", supervisor.history_s, between(1, 3600, "s"),
                 "How much of the past `handcast trace` and `handcast latency` can show.");
   visitor.field("metrics_port", supervisor.metrics_port, between(0, 65535),
