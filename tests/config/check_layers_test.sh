@@ -61,7 +61,7 @@ must_catch 'the tools must not include services/lab/twin/twin.hpp, which is of t
   services/tools/doctor/planted.cpp '#include "services/lab/twin/twin.hpp"'
 
 # Cycles of two modules, and of two folders inside one module.
-must_catch 'a cycle: renderer/filter -> renderer/predict -> renderer/filter' \
+must_catch 'a cycle: renderer/predict -> renderer/filter -> renderer/predict' \
   renderer/predict/CMakeLists.txt 'handcast_program(planted USES renderer/filter)' \
   renderer/predict/planted.cpp '#include "renderer/filter/filters.hpp"'
 must_catch 'a cycle: services/landmarks/inference/onednn -> services/landmarks/inference/onnx -> ' \
