@@ -9,20 +9,18 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "ipc/base/clock.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/projection.hpp"
-#include "tests/bench/goals.hpp"
+#include "tests/bench/arguments.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/rig_process.hpp"
 #include "tests/bench/rings_transports.hpp"
@@ -136,7 +134,7 @@ Words network(const TwoComputers& computers, const char* device, const char* pee
 }
 
 int run(double seconds, const Words& both_settings, const Words& near_settings,
-        const char* goals_file) {
+        const Arguments& arguments) {
   const RigScope scope;
   TwoComputers computers;
   if (!computers.is_connected()) fmt::print("both are this computer: {}\n", computers.kWhyNot);
@@ -197,23 +195,19 @@ int run(double seconds, const Words& both_settings, const Words& near_settings,
       {"added age of a pose on another computer, p99", percentile(added_ms, 0.99), 1, "ms"},
       {"the same, p50", median(added_ms), 0.5, "ms"},
       {"lights of two computers apart, mean", mean(apart_px), 1, "px"}};
-  print_goals(goals);
-  return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
+  return arguments.report(goals);
 }
 
 }  // namespace
 }  // namespace handcast::bench
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  handcast::bench::Arguments arguments("bench_bridge", "Measures two rigs on two computers.");
   double seconds = 20;
   std::vector<std::string> both_settings, near_settings;
-  const char* goals_file = nullptr;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::string_view(argv[i]) == "--goals") goals_file = argv[i + 1];
-    if (std::string_view(argv[i]) == "--seconds") seconds = std::atof(argv[i + 1]);
-    if (std::string_view(argv[i]) == "--both") both_settings.emplace_back(argv[i + 1]);
-    if (std::string_view(argv[i]) == "--near") near_settings.emplace_back(argv[i + 1]);
-  }
-  return handcast::bench::run(seconds, both_settings, near_settings, goals_file);
+  arguments.add("--seconds N", seconds, "How long", {1, 3600});
+  arguments.add("--both path=value", both_settings, "A setting of both rigs");
+  arguments.add("--near path=value", near_settings, "A setting of the near rig");
+  if (const auto code = arguments.answered(argc, argv)) return *code;
+  return handcast::bench::run(seconds, both_settings, near_settings, arguments);
 }

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,8 +20,8 @@
 #include "ipc/msg/guest_picture.hpp"
 #include "ipc/msg/projection.hpp"
 #include "ipc/ring/writer.hpp"
+#include "tests/bench/arguments.hpp"
 #include "tests/bench/control_rig.hpp"
-#include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/rings_transports.hpp"
 #include "tests/bench/watched_frames.hpp"
@@ -195,7 +194,7 @@ void measure_frames(const RigFolder& folder, int turns, std::vector<Goal>& goals
                    1e-3 * (median(lit.second_us) - median(lit.first_us)), 0.15, "ms"});
 }
 
-int run(int turns, const char* goals_file) {
+int run(int turns, const Arguments& arguments) {
   const RigFolder folder;
   std::vector<Goal> goals;
   if (turns > 0) measure_frames(folder, turns, goals);
@@ -230,20 +229,16 @@ int run(int turns, const char* goals_file) {
     goals.push_back(
         {"dark frames while content was killed", static_cast<double>(kills.dark), 0, ""});
   }
-  print_goals(goals);
-  return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
+  return arguments.report(goals);
 }
 
 }  // namespace
 }  // namespace handcast::bench
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  handcast::bench::Arguments arguments("bench_content_rig", "Measures contents in a rig.");
   int turns = 15;
-  const char* goals_file = nullptr;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::string_view(argv[i]) == "--goals") goals_file = argv[i + 1];
-    if (std::string_view(argv[i]) == "--turns") turns = std::max(0, std::atoi(argv[i + 1]));
-  }
-  return handcast::bench::run(turns, goals_file);
+  arguments.add("--turns N", turns, "Turns of the frames; 0: none", {0, 1000});
+  if (const auto code = arguments.answered(argc, argv)) return *code;
+  return handcast::bench::run(turns, arguments);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the light notices what is done to the desk: the refreshes that a rig
 // (config/rigs/twin.toml) misses while its desk is idle, attacked, or watched, in turns.
-//   bench_desk_attack [--goals FILE] [SECONDS [ROUNDS]]
+//   bench_desk_attack [--goals FILE] [--seconds N] [--rounds N]
 // An attack is compared with the same one at a port where nobody listens.
 #include <fmt/format.h>
 #include <sched.h>
@@ -16,13 +16,12 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "tests/bench/arguments.hpp"
 #include "tests/bench/control_rig.hpp"
-#include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/process_time.hpp"
 #include "tests/bench/rings_transports.hpp"
@@ -159,7 +158,7 @@ struct Case {
   std::vector<double> missed_per_min, busy, sent_hz;
 };
 
-int run(double seconds, int rounds, const char* goals_file) {
+int run(double seconds, int rounds, const Arguments& arguments) {
   const RigFolder folder;
   const TwinRig rig(
       folder, {"camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false",
@@ -227,18 +226,19 @@ int run(double seconds, int rounds, const char* goals_file) {
       {"refreshes missed because of OSC", more(2, 1), kNoise, "a minute"},
       {"refreshes missed because of hostile clients", more(4, 3), kNoise, "a minute"},
       {"refreshes missed because of a page", more(5, 0), kNoise, "a minute"}};
-  print_goals(goals);
-  return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
+  return arguments.report(goals);
 }
 
 }  // namespace
 }  // namespace handcast::bench
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  const bool has_file = argc > 2 && std::string_view(argv[1]) == "--goals";
-  const char* goals_file = has_file ? argv[2] : nullptr;
-  const std::vector<std::string> words(argv + (has_file ? 3 : 1), argv + argc);
-  return handcast::bench::run(words.empty() ? 10 : std::atof(words[0].c_str()),
-                              words.size() > 1 ? std::atoi(words[1].c_str()) : 6, goals_file);
+  handcast::bench::Arguments arguments("bench_desk_attack",
+                                       "Measures the light of a rig whose desk is attacked.");
+  double seconds = 10;
+  int rounds = 6;
+  arguments.add("--seconds N", seconds, "How long each case lasts", {1, 3600});
+  arguments.add("--rounds N", rounds, "How often each case is measured", {1, 1000});
+  if (const auto code = arguments.answered(argc, argv)) return *code;
+  return handcast::bench::run(seconds, rounds, arguments);
 }

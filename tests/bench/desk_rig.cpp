@@ -25,8 +25,8 @@
 #include "ipc/control/desk_address.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/projection.hpp"
+#include "tests/bench/arguments.hpp"
 #include "tests/bench/control_rig.hpp"
-#include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/process_time.hpp"
 #include "tests/bench/rings_transports.hpp"
@@ -219,7 +219,7 @@ void watch_a_page(const Page& page, pid_t pid, std::vector<Goal>& goals) {
   goals.push_back({"picture on the page, age, p99", percentile(ages_ms, 0.99), 100, "ms"});
 }
 
-int run(const char* goals_file) {
+int run(const Arguments& arguments) {
   const RigFolder folder;
   std::vector<Goal> goals;
   const TwinRig rig(
@@ -250,15 +250,14 @@ int run(const char* goals_file) {
   fmt::print("the desk without a page: {:.1f} % of one core\n", 100 * share);
   goals.push_back({"desk without a page, of one core", 100 * share, 1, "%"});
   watch_a_page(page, pid, goals);
-  print_goals(goals);
-  return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
+  return arguments.report(goals);
 }
 
 }  // namespace
 }  // namespace handcast::bench
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  const bool has_file = argc > 2 && std::string_view(argv[1]) == "--goals";
-  return handcast::bench::run(has_file ? argv[2] : nullptr);
+  handcast::bench::Arguments arguments("bench_desk_rig", "Measures a rig and its desk.");
+  if (const auto code = arguments.answered(argc, argv)) return *code;
+  return handcast::bench::run(arguments);
 }

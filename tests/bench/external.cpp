@@ -15,7 +15,6 @@
 #include <functional>
 #include <random>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "ipc/base/clock.hpp"
@@ -23,8 +22,8 @@
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/guest_streams.hpp"
 #include "ipc/msg/hand_poses.hpp"
+#include "tests/bench/arguments.hpp"
 #include "tests/bench/control_rig.hpp"
-#include "tests/bench/goals.hpp"
 #include "tests/bench/percentiles.hpp"
 #include "tests/bench/rings_transports.hpp"
 #include "tests/bench/watched_frames.hpp"
@@ -134,7 +133,7 @@ int missed_with(const Case& of, double seconds) {
 }
 
 /// `wait`: how the service of the tracker waits for the program.
-int run(double seconds, const std::string& wait, const char* goals_file) {
+int run(double seconds, const std::string& wait, const Arguments& arguments) {
   const RigFolder folder;
   const TwinRig rig(folder,
                     {"camera.rate_hz=120", "projector.rate_hz=120", "observer.enabled=false",
@@ -172,22 +171,18 @@ int run(double seconds, const std::string& wait, const char* goals_file) {
   const Program program(good);
   ::usleep(500'000);
   goals.push_back({"samples a second of the next program", ages_us(2).size() / 2., 80, "Hz", true});
-  print_goals(goals);
-  return goals_file == nullptr || write_goals(goals_file, goals) ? 0 : 1;
+  return arguments.report(goals);
 }
 
 }  // namespace
 }  // namespace handcast::bench
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  handcast::bench::Arguments arguments("bench_external", "Measures a tracker of somebody else.");
   double seconds = 10;
   std::string wait = "futex";
-  const char* goals_file = nullptr;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    if (std::string_view(argv[i]) == "--goals") goals_file = argv[i + 1];
-    if (std::string_view(argv[i]) == "--seconds") seconds = std::atof(argv[i + 1]);
-    if (std::string_view(argv[i]) == "--wait") wait = argv[i + 1];
-  }
-  return handcast::bench::run(seconds, wait, goals_file);
+  arguments.add("--seconds N", seconds, "How long", {1, 3600});
+  arguments.add("--wait futex|predictive|spin", wait, "How the rig waits for samples");
+  if (const auto code = arguments.answered(argc, argv)) return *code;
+  return handcast::bench::run(seconds, wait, arguments);
 }
