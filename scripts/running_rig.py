@@ -12,15 +12,38 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 HANDCAST = pathlib.Path(os.environ.get("HANDCAST_BIN", ROOT / "build/bin")).resolve() / "handcast"
 
 
+def number_in(least, most):
+    def parse(word):
+        try:
+            if least <= float(word) <= most:
+                return float(word)
+        except ValueError:
+            pass
+        raise argparse.ArgumentTypeError(f"'{word}' is no number from {least:g} to {most:g}")
+    return parse
+
+
+def file_that_exists(word):
+    if not pathlib.Path(word).is_file():
+        raise argparse.ArgumentTypeError(f"there is no file '{word}'")
+    return word
+
+
 def options_parser(name, minutes):
-    """The options that scripts which run a rig for some minutes have in common. `name`: that of the folder in out/."""
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--minutes", type=float, default=minutes)
-    parser.add_argument("--rig", default=ROOT / "config/rigs/twin.toml")
+    """The options that scripts which run a rig for some minutes have in common. `name`: of the script, and of the folder in out/."""
+    parser = argparse.ArgumentParser(prog=name, usage=f"scripts/{name} --help", allow_abbrev=False)
+    parser.add_argument("--minutes", type=number_in(0.01, 1e6), default=minutes)
+    parser.add_argument("--rig", type=file_that_exists, default=ROOT / "config/rigs/twin.toml")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / name)
     parser.add_argument("--set", action="append", default=[], metavar="path=value")
     parser.add_argument("--seed", type=int, default=1)
     return parser
+
+
+def build():
+    """Builds the programs of a rig. Ends this process with 1 if that fails."""
+    if subprocess.run([ROOT / "scripts/build"]).returncode != 0:
+        raise SystemExit(1)
 
 
 class Rig:

@@ -9,7 +9,7 @@ import signal
 import sys
 import time
 
-from running_rig import Rig, options_parser
+from running_rig import Rig, build, number_in, options_parser
 
 SAMPLE_EVERY_S = 5
 MOST_MISSED_PERCENT = 1  # more than in quiet: what a busy machine misses anyway is not the kills' doing
@@ -21,8 +21,8 @@ COLOURS = ("#1b6ca8", "#c1440e", "#3a7d44", "#7b4b94", "#b8860b", "#555555", "#0
 
 def parse_options():
     parser = options_parser("soak", minutes=30)
-    parser.add_argument("--every", type=float, default=2)
-    parser.add_argument("--kill-supervisor", type=float, default=60)
+    parser.add_argument("--every", type=number_in(0.1, 3600), default=2)
+    parser.add_argument("--kill-supervisor", type=number_in(0, 1e6), default=60)
     return parser.parse_args()
 
 
@@ -193,6 +193,7 @@ def write_csv(rows, path):
 
 def main():
     options = parse_options()
+    build()
     options.out.mkdir(parents=True, exist_ok=True)
     rig = Rig(options.rig, options.set, open(options.out / "rig.log", "w"))
     try:

@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 
-from running_rig import HANDCAST, Rig, options_parser, processes_of
+from running_rig import HANDCAST, Rig, build, options_parser, processes_of
 
 LONGEST_STOP_S = 5
 DOUBLE_AFTER_S = 3  # a replacement and the process that it replaces may overlap for less
@@ -274,6 +274,7 @@ def main():
     # A shell's job in the background ignores it, and a rig respects that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     options = options_parser("storm", minutes=10).parse_args()
+    build()
     options.out.mkdir(parents=True, exist_ok=True)
     chance, folder, programs = random.Random(options.seed), Folder(), Programs()
     rows, events = [], collections.Counter()
