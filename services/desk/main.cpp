@@ -9,10 +9,13 @@
 
 #include "config/settings/settings.hpp"
 #include "ipc/base/home.hpp"
+#include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "renderer/hand/hand_mesh.hpp"
+#include "services/desk/cues/cue_list.hpp"
 #include "services/desk/cues/cues.hpp"
 #include "services/desk/gestures.hpp"
+#include "services/desk/knobs/gesture_list.hpp"
 #include "services/desk/knobs/knobs.hpp"
 #include "services/desk/lamp/lamp.hpp"
 #include "services/desk/midi/midi.hpp"
@@ -84,6 +87,20 @@ static void run_desk(service::Context& context) {
   while (!surfaces.empty()) surfaces.pop_back();
 }
 
+/// Reads the files that the rig names for the desk. Names the faults of all.
+static Result<void> check_desk(const config::Rig& rig, const calib::Calibration&) {
+  const auto controls = desk::controls_of(rig);
+  std::vector<std::string> faults;
+  const auto check = [&](const std::string& file, const auto& read) {
+    if (file.empty()) return;
+    if (const auto result = read(file, controls); !result) faults.push_back(result.error().what);
+  };
+  check(rig.desk.cues, desk::cues::read_cues);
+  check(rig.desk.gestures, desk::knobs::read_gestures);
+  if (faults.empty()) return {};
+  return fail(Errc::bad_config, join(faults, "\n"));
+}
+
 /// What makes the panel another one, and what the surfaces read.
 static std::vector<std::string> settings_read() {
   std::vector<std::string> names{"desk", "hand", "projector.lamp"};
@@ -100,5 +117,5 @@ int main(int argc, char** argv) {
                        .paced_by = "60 Hz",
                        .subscribes = {"pose.hands"},
                        .settings = settings_read()},
-                      argc, argv, run_desk);
+                      argc, argv, run_desk, check_desk);
 }

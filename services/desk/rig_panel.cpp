@@ -29,6 +29,8 @@ void for_live(config::Rig& rig, const Use& use) {
       if (setting.effect == config::Effect::live) use(setting);
 }
 
+}  // namespace
+
 std::vector<Control> controls_of(config::Rig filed) {
   std::vector<Control> controls;
   for_live(filed, [&](const config::Setting& setting) {
@@ -48,8 +50,6 @@ std::vector<Control> controls_of(config::Rig filed) {
   });
   return controls;
 }
-
-}  // namespace
 
 RigPanel::RigPanel(config::LiveBoard board)
     : board_(std::move(board)), controls_(controls_of(board_.filed())) {}

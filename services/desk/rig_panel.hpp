@@ -10,6 +10,9 @@
 
 namespace handcast::desk {
 
+/// The live settings of a rig, whose values are those of its file.
+std::vector<Control> controls_of(config::Rig filed);
+
 /// The panel of a rig that is up. Values are read from the ring when they are asked for, so that
 /// changes of other programs are seen.
 class RigPanel final : public Panel {

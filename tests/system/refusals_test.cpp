@@ -121,6 +121,10 @@ TEST_F(Refusals, ConfigOpensWhatTheServicesOpen) {
               HasSubstr("pose.process.cores: there is no core 1023"));
   EXPECT_THAT(refusal("[landmarks]\nbackend = \"handcast\"\nmodels = \"nowhere\""),
               HasSubstr("nowhere: there is no such folder of models"));
+  std::ofstream(scratch_.path() / "cues.toml") << "[[cue]]\nset.light.mastre = 1\n";
+  std::ofstream(scratch_.path() / "turn.toml") << "[[gesture]]\n";
+  EXPECT_THAT(refusal("[desk]\ncues = \"cues.toml\"\ngestures = \"turn.toml\""),
+              AllOf(HasSubstr("cues.toml:2"), HasSubstr("turn.toml:1")));
   EXPECT_THAT(refusal("name = \"a b\""), HasSubstr("'a b' is not a valid name"));
   EXPECT_THAT(traces(), IsEmpty());
 }
