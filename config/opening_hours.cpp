@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "ipc/base/quote.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast::config {
 namespace {
@@ -22,11 +23,6 @@ std::string_view take_part(std::string_view& text, std::string_view separator) {
   const auto part = text.substr(0, end);
   text.remove_prefix(std::min(end + separator.size(), text.size()));
   return part;
-}
-
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
-  return text.substr(0, text.find_last_not_of(" \t") + 1);
 }
 
 /// A number of this many digits from 0 to `most`.

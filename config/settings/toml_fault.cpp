@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "ipc/base/quote.hpp"
 #include "ipc/base/suggest.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast::config {
 
@@ -36,18 +38,6 @@ using MaybeGuess = std::optional<Guess>;
 bool is_name_char(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
          c == '-';
-}
-
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-  return text.substr(0, text.find_last_not_of(kSpace) + 1);
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
 }
 
 /// The end of the string that begins at `begin`; kNone if it is not closed on its line.
@@ -258,7 +248,8 @@ MaybeGuess list_value(std::string_view line, std::size_t begin, std::string_view
 
 /// The true or false that a word stands for in other languages; "" for others.
 std::string_view flag_of(std::string_view word) {
-  const auto small = lower(word);
+  std::string small(word);
+  std::ranges::transform(small, small.begin(), [](unsigned char c) { return std::tolower(c); });
   for (const std::string_view yes : {"true", "yes", "on"})
     if (small == yes) return "true";
   for (const std::string_view no : {"false", "no", "off"})

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "ipc/base/quote.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast {
 namespace {
@@ -31,12 +32,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 constexpr std::size_t kLongest = 40;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::string_view trimmed(std::string_view text) {
-  const auto begin = std::min(text.find_first_not_of(" \t"), text.size());
-  text.remove_prefix(begin);
-  return text.substr(0, text.find_last_not_of(" \t") + 1);
-}
 
 std::optional<double> plain_number(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);

@@ -10,6 +10,7 @@
 
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast::watch {
 namespace {
@@ -67,19 +68,6 @@ std::string span_of(const Fault& fault) {
   return fault.since + " to " + (is_one_day ? clock_part(fault.until) : fault.until);
 }
 
-std::string escaped(const std::string& text) {
-  std::string html;
-  for (const char c : printable(text)) {
-    if (c == '<')
-      html += "&lt;";
-    else if (c == '&')
-      html += "&amp;";
-    else
-      html += c;
-  }
-  return html;
-}
-
 /// The day as a bar: a rectangle for each run of equal minutes.
 std::string bar_of(const Day& day) {
   std::string bar =
@@ -134,18 +122,18 @@ std::string report_page(const Day& day) {
       "<style>{2}</style>\n<h1>{0}, {1}</h1>\n<svg viewBox=\"-20 0 1480 72\" role=\"img\" "
       "aria-label=\"The day\">\n{3}</svg>\n<p>Yellow: light. Grey: dark on purpose. Red: a fault. "
       "White: the rig is down.</p>\n<table>\n",
-      escaped(day.rig), escaped(day.date), kStyle, bar_of(day));
+      html_of(day.rig), html_of(day.date), kStyle, bar_of(day));
   for (const auto& [name, value] : rows_of(day))
-    page += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", name, escaped(value));
+    page += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", name, html_of(value));
   page += fmt::format("</table>\n<h2>Faults</h2>\n{}", day.faults.empty() ? "<p>None.</p>\n" : "");
   if (!day.faults.empty()) page += "<table>\n";
   for (const auto& fault : day.faults)
     page += fmt::format("<tr><th>{}</th><td class=\"bad\">{}</td><td>{}</td></tr>\n",
-                        escaped(span_of(fault)), escaped(fault.sentence), escaped(fault.black_box));
+                        html_of(span_of(fault)), html_of(fault.sentence), html_of(fault.black_box));
   if (!day.faults.empty()) page += "</table>\n";
   page += "<h2>Events</h2>\n<table>\n";
   for (const auto& event : day.events)
-    page += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", event.time, escaped(event.text));
+    page += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", event.time, html_of(event.text));
   return page + "</table>\n</html>\n";
 }
 

@@ -9,6 +9,7 @@
 
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/quote.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast::content::shader {
 namespace {
@@ -35,19 +36,12 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-std::string_view without_blanks(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  const auto begin = text.find_first_not_of(kBlanks);
-  if (begin == text.npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
-}
-
 /// "buffer A" as 0; empty if it is none.
 std::optional<int> buffer_named(std::string_view text) {
   constexpr std::string_view kWord = "buffer";
   const auto words = lower(text);
   if (!words.starts_with(kWord)) return std::nullopt;
-  const auto name = without_blanks(std::string_view(words).substr(kWord.size()));
+  const auto name = trimmed(std::string_view(words).substr(kWord.size()));
   if (name.size() != 1 || name[0] < 'a' || name[0] >= 'a' + kShadertoyBuffers) return std::nullopt;
   return name[0] - 'a';
 }
@@ -55,7 +49,7 @@ std::optional<int> buffer_named(std::string_view text) {
 /// Takes the words about wrapping and filtering from the end of a text.
 void take_sampling(std::string_view& text, Channel& channel) {
   for (;;) {
-    text = without_blanks(text);
+    text = trimmed(text);
     const auto blank = text.find_last_of(" \t");
     if (blank == text.npos) return;
     const auto word = lower(text.substr(blank + 1));
@@ -142,13 +136,13 @@ class PartReader {
   }
 
   Result<void> take(std::string_view line) {
-    const auto plain = without_blanks(line);
+    const auto plain = trimmed(line);
     if (!plain.starts_with("//!")) {
       part_->text += std::string(line) + "\n";
       return {};
     }
     part_->text += "\n";
-    const auto words = without_blanks(plain.substr(3));
+    const auto words = trimmed(plain.substr(3));
     const auto word = lower(words);
     if (word == "common") return begin(kCommon);
     if (word == "image") return begin(kImage);
@@ -166,7 +160,7 @@ class PartReader {
     const auto equals = words.find('=');
     const int number = words.size() > kDigit ? words[kDigit] - '0' : -1;
     if (number < 0 || number >= kShadertoyChannels || equals == words.npos ||
-        without_blanks(words.substr(kDigit + 1, equals - kDigit - 1)) != "")
+        trimmed(words.substr(kDigit + 1, equals - kDigit - 1)) != "")
       return fail(
           Errc::bad_config,
           fmt::format("{} is no channel; write e.g. \"//! iChannel0 = buffer A\"", quote(words)));
@@ -187,10 +181,10 @@ class PartReader {
 bool has_headings(std::string_view text) {
   for (std::size_t begin = 0; begin < text.size();) {
     const auto end = std::min(text.find('\n', begin), text.size());
-    const auto line = without_blanks(text.substr(begin, end - begin));
+    const auto line = trimmed(text.substr(begin, end - begin));
     begin = end + 1;
     if (!line.starts_with("//!")) continue;
-    const auto words = lower(without_blanks(line.substr(3)));
+    const auto words = lower(trimmed(line.substr(3)));
     if (words == "common" || words == "image" || words.starts_with("buffer")) return true;
   }
   return false;

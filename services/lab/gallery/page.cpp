@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast::gallery {
 namespace {
@@ -40,21 +41,11 @@ running rig; <code>handcast content "NAME setting=value"</code> changes it.</p><
 <main>
 )";
 
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    const bool is_plain = code >= 0x20 && c != '<' && c != '>' && c != '&' && c != '"';
-    html += is_plain ? std::string(1, c) : fmt::format("&#{};", code);
-  }
-  return html;
-}
-
 /// Its range or its choices, and its first value.
 std::string range_of(const content::Parameter& parameter) {
   using Kind = content::Parameter::Kind;
   const auto& first = parameter.initial;
-  if (parameter.kind == Kind::choice) return escaped(join(parameter.choices, ", "));
+  if (parameter.kind == Kind::choice) return html_of(join(parameter.choices, ", "));
   if (parameter.kind == Kind::flag) return first.empty() || first[0] == 0 ? "off" : "on";
   if (parameter.kind == Kind::colour && first.size() == 4) {
     const auto colour =
@@ -72,7 +63,7 @@ std::string settings_of(const Entry& entry) {
   std::string rows;
   for (const auto& parameter : entry.parameters)
     rows += fmt::format("<tr><td><code>{}</code></td><td>{}</td><td>{}</td></tr>",
-                        escaped(parameter.name), escaped(parameter.label), range_of(parameter));
+                        html_of(parameter.name), html_of(parameter.label), range_of(parameter));
   return fmt::format("<details><summary>Settings</summary><table>{}</table></details>", rows);
 }
 
@@ -83,8 +74,8 @@ std::string figure_of(const Entry& entry, std::size_t number, int frames, double
       "{3}px; height: {4}px; background-image: url('{5}'); animation: s{0} {6:.2f}s steps({7}) "
       "infinite alternate\"></div></div><figcaption><h2>{2} <small>{8:.1f} ms</small></h2>"
       "<p>{9}</p>{10}</figcaption></figure>\n",
-      number, entry.width_px * (frames - 1), escaped(entry.title), entry.width_px, entry.height_px,
-      entry.file, seconds, frames - 1, entry.took_ms, escaped(entry.sentence), settings_of(entry));
+      number, entry.width_px * (frames - 1), html_of(entry.title), entry.width_px, entry.height_px,
+      entry.file, seconds, frames - 1, entry.took_ms, html_of(entry.sentence), settings_of(entry));
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ipc/base/text.hpp"
+
 namespace handcast::study {
 namespace {
 
@@ -25,16 +27,6 @@ figure { margin: 0; } img { max-width: 100%; } small { opacity: .75; }
 )";
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string html;
-  for (const char c : text)
-    html += c == '<' || c == '>' || c == '&' || c == '"' ||
-                    (static_cast<unsigned char>(c) < 0x20 && c != '\n')
-                ? fmt::format("&#{};", static_cast<int>(static_cast<unsigned char>(c)))
-                : std::string(1, c);
-  return html;
-}
 
 std::string page_head(std::string_view title) {
   std::string head(kHead);
@@ -74,19 +66,19 @@ std::string bars_of(const Comparison& comparison, const std::string& unit) {
           "<rect class=\"bar{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
           "height=\"{:.1f}\"><title>{}, {}: {:.2f} {}</title></rect>",
           c % 2, middle + (static_cast<double>(c) - conditions / 2) * bar, floor - height, bar - 2,
-          height, escaped(comparison.subjects[s]), escaped(comparison.conditions[c]),
+          height, html_of(comparison.subjects[s]), html_of(comparison.conditions[c]),
           comparison.values[c][s], unit);
     }
     if (subjects <= 40)
       svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>", middle,
-                         kHeight - 10, escaped(comparison.subjects[s]));
+                         kHeight - 10, html_of(comparison.subjects[s]));
   }
   for (std::size_t c = 0; c < comparison.conditions.size(); ++c)
     svg += fmt::format(
         "<rect class=\"bar{}\" x=\"{}\" y=\"6\" width=\"12\" height=\"12\"/>"
         "<text x=\"{}\" y=\"16\">{}</text>",
         c % 2, kLeft + 150 * static_cast<double>(c), kLeft + 18 + 150 * static_cast<double>(c),
-        escaped(comparison.conditions[c]));
+        html_of(comparison.conditions[c]));
   return svg + fmt::format("<text x=\"0\" y=\"16\">{}</text></svg>", unit);
 }
 

@@ -10,8 +10,6 @@ namespace handcast::study {
 
 /// All that is before the first paragraph.
 std::string page_head(std::string_view title);
-/// A text that may stand between tags and in attributes.
-std::string escaped(std::string_view text);
 /// Bars of the conditions by subject, as the figures of the paper, SVG.
 std::string bars_of(const Comparison& comparison, const std::string& unit);
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "ipc/base/text.hpp"
 #include "services/studies/base/latin_square.hpp"
 #include "services/studies/base/page.hpp"
 
@@ -53,7 +54,7 @@ std::string difficulties_of(const CharacterFindings& findings) {
     rows += fmt::format(
         "<tr><td>{}<td><svg viewBox=\"0 0 500 22\" role=\"img\" aria-label=\"answers 1 "
         "to 5\">",
-        escaped(findings.seconds.conditions[c]));
+        html_of(findings.seconds.conditions[c]));
     for (std::size_t d = 0; d < 5; ++d) {
       const int count = findings.difficulty[c][d];
       if (count == 0) continue;
@@ -237,11 +238,11 @@ std::string page_of(const CharacterFindings& findings) {
       "<figure>{}</figure><pre>{}\nBy pair of sessions that follow each other, as in the paper. "
       "The "
       "test takes each pair for a subject of its own, so its p is too small:\n{}",
-      bars_of(findings.seconds, "s"), escaped(describe(findings.seconds, "s")),
-      escaped(describe(findings.pairs, "s")));
+      bars_of(findings.seconds, "s"), html_of(describe(findings.seconds, "s")),
+      html_of(describe(findings.pairs, "s")));
   for (std::size_t c = 0; c < findings.accuracy.size(); ++c)
     page += fmt::format("{}: {:.1f} % of the answers are right\n",
-                        escaped(findings.seconds.conditions[c]), 100 * findings.accuracy[c]);
+                        html_of(findings.seconds.conditions[c]), 100 * findings.accuracy[c]);
   return page + "</pre>" + difficulties_of(findings) + "</html>\n";
 }
 

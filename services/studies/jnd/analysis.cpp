@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ipc/base/quote.hpp"
+#include "ipc/base/text.hpp"
 #include "services/studies/base/page.hpp"
 #include "services/studies/base/study_command.hpp"
 
@@ -88,7 +89,7 @@ std::string sessions_of(const JndFindings& findings) {
   for (const auto& [subject, result] : findings.sessions)
     rows += fmt::format(
         "<tr><td>{}<td>{}<td>{}<td>{}<td>{:.2f}<td>{}<td>{:.2f} ({:.2f}…{:.2f})</tr>",
-        escaped(subject), result.is_training ? "training" : "test",
+        html_of(subject), result.is_training ? "training" : "test",
         kConditionNames[static_cast<std::size_t>(result.condition)], result.trials, result.jnd_ms,
         result.mean_of_five_ms ? fmt::format("{:.2f}", *result.mean_of_five_ms) : "–",
         result.fit.jnd_ms, result.fit.low_ms, result.fit.high_ms);
@@ -145,14 +146,14 @@ std::string page_of(const JndFindings& findings, const std::string& heat) {
       "<p>The delay of light on a moving hand that people notice in 75 % of the comparisons with "
       "perfect light.</p>";
   page += fmt::format("<figure>{}</figure><pre>{}</pre>", bars_of(findings.comparison, "ms"),
-                      escaped(describe(findings.comparison, "ms")));
+                      html_of(describe(findings.comparison, "ms")));
   if (!heat.empty())
     page += fmt::format(
         "<h2>Where they looked</h2><img src=\"{}\" alt=\"Places of the hand that "
         "subjects marked, by condition\">",
-        escaped(heat));
+        html_of(heat));
   for (const auto& sentence : findings.unfinished)
-    page += fmt::format("<p>{}</p>", escaped(sentence));
+    page += fmt::format("<p>{}</p>", html_of(sentence));
   return page + sessions_of(findings) + "</html>\n";
 }
 

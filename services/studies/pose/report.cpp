@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "ipc/base/text.hpp"
 #include "services/studies/base/page.hpp"
 #include "services/studies/pose/pose.hpp"
 #include "services/studies/pose/run.hpp"
@@ -24,7 +25,7 @@ std::string bars_of(const std::vector<PoseSession>& sessions, const std::string&
           "to {:.0f}°</title></rect>",
           range->second[0] * kPerDegree, kBar * static_cast<double>(s),
           std::max(1.0, (range->second[1] - range->second[0]) * kPerDegree), kBar - 2,
-          escaped(sessions[s].time), range->second[0], range->second[1]);
+          html_of(sessions[s].time), range->second[0], range->second[1]);
   return svg + "</svg>";
 }
 
@@ -54,9 +55,9 @@ Result<std::string> pose_report(const std::vector<StudyTable>& logs) {
     if (!sessions) return tl::make_unexpected(sessions.error());
     if (sessions->empty()) continue;
     page += fmt::format("<h2>Person {}</h2><table><tr><th>Session<th>poses<th>seconds in all</tr>",
-                        escaped(log.rows[0][0]));
+                        html_of(log.rows[0][0]));
     for (const auto& session : *sessions)
-      page += fmt::format("<tr><td>{}<td>{}<td>{:.1f}", escaped(session.time), session.poses.size(),
+      page += fmt::format("<tr><td>{}<td>{}<td>{:.1f}", html_of(session.time), session.poses.size(),
                           session.seconds());
     page += "</table>" + ranges_of(*sessions);
   }

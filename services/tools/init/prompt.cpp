@@ -8,18 +8,12 @@
 #include <ostream>
 
 #include "ipc/base/log.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast::init {
 namespace {
 
 constexpr int kMostTries = 3;
-
-std::string trimmed(const std::string& line) {
-  constexpr auto kSpace = " \t\r";
-  const auto begin = line.find_first_not_of(kSpace);
-  return begin == std::string::npos ? std::string()
-                                    : line.substr(begin, line.find_last_not_of(kSpace) - begin + 1);
-}
 
 /// The word of the option with this number; other answers are words already.
 std::string word_of(const Question& question, const std::string& answer) {
@@ -50,7 +44,7 @@ Result<std::string> Prompt::read_answer(const Question& question) {
                             "the best guesses",
                             question.text, question.flag));
   }
-  const auto answer = trimmed(line);
+  const std::string answer(trimmed(line));
   return answer.empty() ? question.preset : word_of(question, answer);
 }
 

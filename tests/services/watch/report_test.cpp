@@ -35,7 +35,7 @@ TEST(Report, OfADayWithoutLightIsReadable) {
 
 TEST(Report, ThePageNeedsNoOtherFileAndShowsTextsAsTheyAre) {
   const auto page = report_page(test::full_day());
-  EXPECT_THAT(page, AllOf(HasSubstr("dies &lt;again>"), Not(HasSubstr("dies <again>")),
+  EXPECT_THAT(page, AllOf(HasSubstr("dies &#60;again&#62;"), Not(HasSubstr("dies <again>")),
                           Not(HasSubstr("http")), Not(HasSubstr("src=")), Not(HasSubstr("href"))));
   EXPECT_THAT(page, HasSubstr("<rect class=\"l\" x=\"600\" y=\"0\" width=\"60\""));
 }
