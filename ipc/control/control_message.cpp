@@ -15,11 +15,6 @@ namespace {
 constexpr std::array<std::string_view, 8> kVerbs{"status", "down",  "restart", "swap",
                                                  "reload", "rings", "history", "rig"};
 
-std::string text_of(const nlohmann::json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
 double number_of(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<double>() : 0;
@@ -37,17 +32,22 @@ std::string_view lack_of(const Request& request) {
 
 }  // namespace
 
+std::string text_at(const nlohmann::json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
 Result<Request> parse_request(std::string_view line) {
   const auto object = nlohmann::json::parse(line, nullptr, false);
   if (!object.is_object()) return fail(Errc::bad_data, "a request is one JSON object on a line");
-  const auto name = text_of(object, "verb");
+  const auto name = text_at(object, "verb");
   const auto verb = std::ranges::find(kVerbs, name);
   if (verb == kVerbs.end())
     return fail(Errc::bad_data,
                 fmt::format("no verb {}; there are: {}", quote(name), join(kVerbs, ", ")));
 
-  const Request request{static_cast<Verb>(verb - kVerbs.begin()), text_of(object, "service"),
-                        text_of(object, "backend"), number_of(object, "seconds")};
+  const Request request{static_cast<Verb>(verb - kVerbs.begin()), text_at(object, "service"),
+                        text_at(object, "backend"), number_of(object, "seconds")};
   if (const auto lack = lack_of(request); !lack.empty())
     return fail(Errc::bad_data, fmt::format("{} needs {}", name, lack));
   return request;

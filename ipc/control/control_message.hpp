@@ -52,6 +52,9 @@ struct Answer {
   std::vector<UniqueFd> descriptors;  ///< close-on-exec, in the order of the answer
 };
 
+/// The text at a key of an object; "" if there is none, as in the answer of another version.
+std::string text_at(const nlohmann::json& object, const char* key);
+
 /// Reads a request. Errors: bad_data, with a sentence that says what is wrong with the line.
 Result<Request> parse_request(std::string_view line);
 /// The reverse, without the newline.

@@ -14,13 +14,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/rig_name.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/base/write_whole.hpp"
+#include "ipc/control/control_message.hpp"
 #include "ipc/control/rig_address.hpp"
 
 namespace handcast::control {
@@ -80,11 +80,6 @@ std::string name_of(std::string_view rig) {
   for (auto& letter : name)
     if (letter == '/') letter = '_';
   return name + std::string(rig) + ".desk";
-}
-
-std::string text_at(const nlohmann::json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
 std::optional<LanAddress> lan_in(const nlohmann::json& desk) {

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "ipc/control/control_client.hpp"
+#include "ipc/control/control_message.hpp"
 #include "ipc/control/desk_address.hpp"
 #include "ipc/control/pairing.hpp"
 #include "supervisor/commands/choose_rig.hpp"
@@ -12,12 +12,6 @@
 
 namespace handcast::supervisor {
 namespace {
-
-/// A text of an object; "" if it is none, as in the answer of another version.
-std::string text_in(const nlohmann::json& object, const char* name) {
-  const auto found = object.find(name);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
 
 /// Whether the desk of a rig works. Errors: unavailable (the rig or its desk is not up).
 Result<void> check_desk(const std::string& rig) {
@@ -28,7 +22,8 @@ Result<void> check_desk(const std::string& rig) {
     return fail(Errc::unavailable,
                 fmt::format("rig '{}' has no desk; its rig file says so in [desk]", rig));
   const auto& service = answer->at(desk);
-  const auto state = text_in(service, "state"), reason = text_in(service, "reason");
+  const auto state = control::text_at(service, "state"),
+             reason = control::text_at(service, "reason");
   if (state == "ready") return {};
   return fail(Errc::unavailable, fmt::format("the desk of rig '{}' is {}{}{}", rig, state,
                                              reason.empty() ? "" : ": ", reason));

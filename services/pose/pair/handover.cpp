@@ -4,18 +4,13 @@
 #include <algorithm>
 
 #include "ipc/base/clock.hpp"
+#include "renderer/base/joint_math.hpp"
 
 namespace handcast::pose {
 namespace {
 
-glm::vec3 position(const msg::Joint& joint) {
-  return {joint.position_m[0], joint.position_m[1], joint.position_m[2]};
-}
-
-glm::quat orientation(const msg::Joint& joint) {
-  const auto& [x, y, z, w] = joint.orientation_xyzw;
-  return {w, x, y, z};
-}
+using renderer::orientation;
+using renderer::position;
 
 /// Of the two quaternions of a rotation, the one nearer to no rotation.
 glm::quat shorter(const glm::quat& q) { return q.w < 0 ? -q : q; }
