@@ -87,18 +87,21 @@ std::size_t ImpatientWriter::write_some(std::string_view text) const {
 
 constexpr std::size_t kLongestLine = 2000;
 
-}  // namespace
-
-std::string printable(std::string_view text) {
+/// What printable() returns, with `indent` before each line but the first.
+std::string shown(std::string_view text, std::string_view indent) {
   std::string shown;
   for (;;) {
     const auto end = text.find('\n');
     shown += shown_line(text.substr(0, end), kLongestLine);
     if (end == text.npos) return shown;
-    shown += '\n';
+    shown.append("\n").append(indent);
     text.remove_prefix(end + 1);
   }
 }
+
+}  // namespace
+
+std::string printable(std::string_view text) { return shown(text, ""); }
 
 }  // namespace handcast
 
@@ -146,10 +149,13 @@ std::atomic<Level>& threshold() {
   return level;
 }
 
+/// Texts from outside may have line ends: what follows must not look like a line of the log.
+constexpr std::string_view kIndent = "  ";
+
 std::string line_of(Level level, std::string_view sentence) {
-  return for_journal(level,
-                     fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
-                                 kNames[static_cast<std::size_t>(level)], printable(sentence)));
+  return for_journal(
+      level, fmt::format("{:.3f} {:<10} {:<7} {}\n", ns_to_seconds(now_ns()), program(),
+                         kNames[static_cast<std::size_t>(level)], shown(sentence, kIndent)));
 }
 
 /// Stderr after never_wait_for_stderr(), which may lose lines.
@@ -184,6 +190,7 @@ void set_program(std::string_view name) { program() = name; }
 void set_level(Level level) { threshold() = level; }
 
 std::optional<ParsedLine> parse(std::string_view line) {
+  if (line.starts_with(kIndent)) return std::nullopt;
   take_word(line);  // time
   take_word(line);  // program
   const auto found = std::ranges::find(kNames, take_word(line));

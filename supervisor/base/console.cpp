@@ -6,6 +6,7 @@
 
 #include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/quote.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -26,8 +27,8 @@ bool has_terminal() {
 }
 
 void print_line(std::string_view line) {
-  log::put(log::for_journal(level_of(line),
-                            fmt::format("{}{}\n", has_terminal() ? kClearLine : "", line)));
+  log::put(log::for_journal(level_of(line), fmt::format("{}{}\n", has_terminal() ? kClearLine : "",
+                                                        shown_line(line, line.size()))));
 }
 
 void show_progress(std::string_view line) {

@@ -6,13 +6,15 @@
 #include <algorithm>
 #include <array>
 
-#include "ipc/base/log.hpp"
+#include "ipc/base/text.hpp"
 
 namespace handcast::supervisor {
 void LogTail::append(std::string_view bytes, const std::function<void(std::string_view)>& on_line) {
   for (const char byte : bytes) {
     if (byte != '\n') unfinished_ += byte;
-    if (byte == '\n' || unfinished_.size() == kLongestLine) finish_line(on_line);
+    const bool is_cut = unfinished_.size() == kLongestLine;
+    if (byte == '\n' || is_cut) finish_line(on_line);
+    if (is_cut) unfinished_ = "  ";  // as log::write() begins the further lines of a sentence
   }
 }
 
@@ -27,10 +29,10 @@ bool LogTail::read_from(int fd, const std::function<void(std::string_view)>& on_
   return true;
 }
 
-/// The line without the prefix of handcast's log.
+/// The line without the prefix of handcast's log, or without its indentation.
 static std::string_view sentence_of(std::string_view line) {
   const auto logged = log::parse(line);
-  return logged ? logged->sentence : line;
+  return logged ? logged->sentence : trimmed(line);
 }
 
 bool LogTail::is_known(std::string_view line) const {

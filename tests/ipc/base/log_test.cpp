@@ -96,7 +96,7 @@ TEST(Log, ATerminalThatIsStoppedIsNotWaitedFor) {
 
 TEST(Log, EveryLineOfASentenceOfSeveralLinesHasAPriorityInTheJournal) {
   EXPECT_THAT(written(true, log::Level::error, "two faults:\nthis\nthat"),
-              MatchesRegex("<3>[0-9.]+ handcast +error +two faults:\n<3>this\n<3>that\n"));
+              MatchesRegex("<3>[0-9.]+ handcast +error +two faults:\n<3>  this\n<3>  that\n"));
 }
 
 TEST(Log, ElsewhereALineHasNoPriority) {
@@ -108,6 +108,14 @@ TEST(Log, ElsewhereALineHasNoPriority) {
     log::error("text");
     EXPECT_THAT(captured.text(), Not(StartsWith("<"))) << stream;
   }
+}
+
+TEST(Log, ALineEndInASentenceBeginsNoLineOfTheLog) {
+  const auto text =
+      written(false, log::Level::info, "page: a\n1.234 desk       error   forged\r\x1b[Kb");
+  EXPECT_THAT(text, MatchesRegex("[0-9.]+ handcast +info +page: a\n  1.234 desk +error +forged"
+                                 "\\\\x0d\\\\x1b.Kb\n"));
+  EXPECT_FALSE(log::parse(text.substr(text.find('\n') + 1)));
 }
 
 TEST(Log, ALineCanBeParsedAgainAndOthersCannot) {

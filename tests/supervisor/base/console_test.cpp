@@ -30,5 +30,9 @@ TEST(Console, ElsewhereALineIsAsItIs) {
   EXPECT_EQ(printed(false, "1.2 camera     warning late"), "1.2 camera     warning late\n");
 }
 
+TEST(Console, WhatALibraryPrintsDoesNotMoveTheCursor) {
+  EXPECT_EQ(printed(false, "title:\r\x1b[2A\tdone"), "title:\\x0d\\x1b[2A\tdone\n");
+}
+
 }  // namespace
 }  // namespace handcast::supervisor

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "ipc/base/log.hpp"
 #include "ipc/base/unique_fd.hpp"
 
 namespace handcast::supervisor {
@@ -36,6 +37,15 @@ TEST(LogTail, ALineWithoutEndDoesNotGrowWithoutEnd) {
   LogTail tail;
   tail.append(std::string(3 * LogTail::kLongestLine, 'x'), ignore);
   EXPECT_EQ(tail.last(10).size(), 3u);
+}
+
+TEST(LogTail, WhatFollowsACutIsNoLineOfTheLog) {
+  LogTail tail;
+  const std::string forged = "1.2 camera     error   forged";
+  tail.append(std::string(LogTail::kLongestLine, 'x') + forged + "\n", ignore);
+  EXPECT_EQ(tail.last(1).front(), "  " + forged);
+  EXPECT_FALSE(log::parse(tail.last(1).front()));
+  EXPECT_EQ(tail.last_sentence(), forged);
 }
 
 TEST(LogTail, TheLastSentenceIsWhatThePersonShouldRead) {
