@@ -130,6 +130,7 @@ class Reader {
 
   Result<Plan> read(const Value& document) {
     Head head;
+    names_rig_ = section(std::get<config::Table>(document.data), "rig") != nullptr;
     const auto [rest, sections] = split(document, {"settings", "variant", "grid"});
     config::apply_document(rest, file_.string(), config::list_settings(head), faults_);
 
@@ -311,7 +312,14 @@ class Reader {
     const bool new_here = std::ranges::find(judged_, rig) == judged_.end();
     judged_.push_back(rig);
     if (!text) {
-      if (new_here) complain(line, "rig", text.error().what);
+      const bool is_unwritten = !names_rig_ && rig == (folder_ / Head().rig).lexically_normal();
+      const auto why = is_unwritten
+                           ? fmt::format(
+                                 "is missing, and there is no {}, which is read in its place; "
+                                 "write the path of a rig file, relative to the plan",
+                                 Head().rig)
+                           : text.error().what;
+      if (new_here) complain(is_unwritten ? 1 : line, "rig", why);
       return {};
     }
     if (const auto parsed = config::parse_rig(*text, rig); !parsed && new_here)
@@ -336,6 +344,7 @@ class Reader {
   std::filesystem::path plan_file_;
   std::filesystem::path file_;    ///< the file that is read
   std::filesystem::path folder_;  ///< of the plan
+  bool names_rig_ = false;        ///< at its top level
   config::Rig scratch_;           ///< receives each value when it is checked
   config::Listing listing_;
   config::Faults faults_;

@@ -55,6 +55,19 @@ TEST(Plan, ARunHasTheSettingsOfThePlanItsVariantAndItsPlaceInTheGrid) {
   EXPECT_EQ(rig_of(*plan, runs[0])->cascade.filter.method, config::Rig().cascade.filter.method);
 }
 
+TEST(Plan, WithoutARigIsToldSoAndNotOfAFileThatItDoesNotName) {
+  for (const auto* toml : {"seconds = 1\n", "[[variant]]\nname = \"a\"\n"}) {
+    const auto plan = parse_plan(toml, "/plans/test.toml");
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().what,
+              "/plans/test.toml:1: rig: is missing, and there is no ../rigs/twin.toml, which is "
+              "read in its place; write the path of a rig file, relative to the plan");
+  }
+  const auto other = parse_plan("rig = \"../rigs/twin.toml\"\n", "/plans/test.toml");
+  ASSERT_FALSE(other);
+  EXPECT_THAT(other.error().what, HasSubstr("rig: /rigs/twin.toml: cannot be read"));
+}
+
 TEST(Plan, AVariantHasTheSettingsOfThoseItIsFrom) {
   const auto plan = plan_of(
       "[[variant]]\nname = \"still\"\nsettings.twin.motion = \"builtin:still\"\n"
