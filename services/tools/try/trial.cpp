@@ -139,6 +139,7 @@ class Trial {
   Result<void> open();
   void note_error(const Error& error);
   void give_pictures();
+  bool await_streams();
   void draw_all();
   Result<bool> draw(int frame);
   void note_picture(int frame, double ms);
@@ -157,6 +158,7 @@ class Trial {
   content::BothHands both_;  ///< as they are drawn
   std::array<renderer::Texture, 2> cards_;
   bool uses_cards_ = false, wrote_all_ = true;
+  bool is_live_ = false;  ///< a part is a video device or the stream of an address
   std::optional<content::Chain> chain_;
   renderer::Texture picture_, first_;
   std::vector<double> ms_;  ///< of the pictures
@@ -167,6 +169,9 @@ Result<void> Trial::open() {
   if (!resolved) return tl::make_unexpected(resolved.error());
   const auto written = config::parse_content(*resolved);
   if (!written) return tl::make_unexpected(written.error());
+  is_live_ = std::ranges::any_of(*written, [](const auto& element) {
+    return element.kind == "capture" || element.what.find("://") != element.what.npos;
+  });
   if (written->size() == 1)
     lone_ = config::print_content({{(*written)[0].kind, (*written)[0].what, {}}}) + ": ";
   auto hands = MovingHands::load();
@@ -259,7 +264,25 @@ void Trial::note_picture(int frame, double ms) {
     report_["plain"] = false;
 }
 
+/// Draws until the streams have brought a picture. Until then, the chain draws an empty one.
+bool Trial::await_streams() {
+  const auto begin_ns = now_ns();
+  int drawn = 0;
+  while (!until_.passed()) {
+    const auto drew = draw(wanted_.frames);
+    if (!drew) return note_error(drew.error()), false;
+    drawn += *drew ? 1 : 0;
+    if (drawn > 1 || report_["plain"] == false)
+      return note_picture(0, ns_to_ms(now_ns() - begin_ns)), true;
+    tell_(report_);
+    sleep_until_ns(now_ns() + seconds_to_ns(1 / kRate_hz));
+  }
+  note_error({Errc::timeout, fmt::format("no picture came within {:g} s", wanted_.patience_s)});
+  return false;
+}
+
 void Trial::draw_all() {
+  if (is_live_ && !await_streams()) return;
   bool goes_on = true;
   for (int frame = 0; frame < wanted_.frames && goes_on && (frame < 1 || !until_.passed());
        ++frame) {
@@ -269,6 +292,7 @@ void Trial::draw_all() {
     if (drew && frame == 0) save("first");
     if (drew && frame == wanted_.frames / 2 && frame > 0) save("middle");
     tell_(report_);
+    if (is_live_) sleep_until_ns(now_ns() + seconds_to_ns(1 / kRate_hz));
   }
   if (report_["pictures"] > 1) save("last");
   report_["drawn"] = goes_on && wrote_all_ && report_["pictures"] > 0;

@@ -67,6 +67,13 @@ class TryTest : public testing::Test {
   std::string output_;
 };
 
+TEST_F(TryTest, AStreamThatBringsNoPictureIsNotDrawn) {
+  const auto all = reports({"capture:/dev/null", "film:tcp://127.0.0.1:1"}, 1);
+  EXPECT_THAT(output_, HasSubstr("not drawn: '/dev/null' is not a video device"));
+  EXPECT_THAT(output_, HasSubstr("not drawn: 'tcp://127.0.0.1:1' cannot be opened: Connection"));
+  EXPECT_EQ(all["summary"]["drawn"], 0);
+}
+
 TEST_F(TryTest, PicturesAndPatternsNeedNoOpenGL) {
   ASSERT_TRUE(renderer::write_png(scratch_.path() / "red.png",
                                   renderer::Texture(8, 5, 0xff0000ffu).view()));
