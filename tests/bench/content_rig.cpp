@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What content costs a rig (config/rigs/twin.toml), and how fast it is there.
-//   bench_content_rig [--goals FILE] [--turns N]
+//   bench_content_rig [--goals FILE] [--turns N] [--priority N]
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
@@ -36,10 +36,17 @@ constexpr int kKills = 20;
 
 constexpr double kRefresh_hz = 120, kContent_hz = 60;
 
+/// Of all services but content.
+int priority = 0;
+
 /// Sensors and projector at rates that two cores keep beside a content.
 std::vector<std::string> settings_with(const std::string& content) {
-  return {"camera.rate_hz=120",       "projector.rate_hz=120",   "observer.enabled=false",
-          "twin.motion=builtin:wave", "content.left=" + content, "content.right=" + content};
+  std::vector<std::string> settings{"camera.rate_hz=120",      "projector.rate_hz=120",
+                                    "observer.enabled=false",  "twin.motion=builtin:wave",
+                                    "content.left=" + content, "content.right=" + content};
+  for (const auto* service : {"camera", "pose", "landmarks", "projector"})
+    settings.push_back(fmt::format("{}.process.priority={}", service, priority));
+  return settings;
 }
 
 template <class T>
@@ -239,6 +246,8 @@ int main(int argc, char** argv) {
   handcast::bench::Arguments arguments("bench_content_rig", "Measures contents in a rig.");
   int turns = 15;
   arguments.add("--turns N", turns, "Turns of the frames; 0: none", {0, 1000});
+  arguments.add("--priority N", handcast::bench::priority,
+                "Real-time priority of camera, tracker, detector and projector", {0, 99});
   if (const auto code = arguments.answered(argc, argv)) return *code;
   return handcast::bench::run(turns, arguments);
 }
