@@ -160,8 +160,9 @@ Corrected HandPipeline::corrected(std::int64_t target_ns, const Predicted& predi
     hand.landmarks = hand.estimated->landmarks;
     hand.has_landmarks = true;
   } else {
-    hand.is_alone = estimates();
-    hand.rung = std::min(hand.rung, hand.has_landmarks ? Rung::landmarks : Rung::predict);
+    hand.is_alone = settings_.filter.method != config::FilterMethod::paper;
+    if (hand.is_alone) hand.rung = std::min(hand.rung, Rung::landmarks);
+    if (!hand.has_landmarks) hand.rung = std::min(hand.rung, Rung::predict);
   }
   if (hand.rung >= Rung::landmarks) return hand;
   hand.estimated.reset();
