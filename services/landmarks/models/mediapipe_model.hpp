@@ -14,9 +14,9 @@ class MediapipeModel final : public LandmarkModel {
   /// `file`: of the landmark network. Errors: those of open_mediapipe_network().
   static Result<MediapipeModel> open(const std::filesystem::path& file);
 
-  /// The sigma makes the light nearest to its place on the twin (DECISIONS.md).
+  /// The sigma makes the light nearest to its place on the twin (docs/lab/experiments.md).
   Traits traits() const override {
-    return {.passes_at_first = 1, .scores_sides = true, .usual_sigma = 0.015f};
+    return {.passes_at_first = 1, .scores_sides = true, .usual_sigma = 0.045f};
   }
   Region region_around(const Points& points_px) const override;
   /// Ignores `side` and `tracker_px`.

@@ -72,7 +72,7 @@ TEST_F(MediapipeDetector, AllLandmarksHaveTheSameSigma) {
   const float wrist_to_knuckle_px = std::hypot(hand.points[9].x_px - hand.points[0].x_px,
                                                hand.points[9].y_px - hand.points[0].y_px);
   // The region's side is about two and a half palms.
-  EXPECT_NEAR(hand.points[0].sigma_px, 0.015 * 2.5 * wrist_to_knuckle_px,
+  EXPECT_NEAR(hand.points[0].sigma_px, 0.045 * 2.5 * wrist_to_knuckle_px,
               0.3 * hand.points[0].sigma_px);
   float surest = 0;
   for (const auto& point : hand.points) {
