@@ -20,7 +20,8 @@ goals --strict "$folder/met.json" || fail "goals that are met failed"
 "$root/scripts/bench" --help | grep -q -- --strict || fail "scripts/bench has no --strict"
 
 # A program that fails is named at the end, after the others and their goals.
-mkdir -p "$folder/tree/scripts" "$folder/tree/build/bin"
+mkdir -p "$folder/tree/scripts" "$folder/tree/build/bin" "$folder/tree/tests/bench"
+echo "handcast_bench(bench_thing)" >"$folder/tree/tests/bench/CMakeLists.txt"
 cp "$root"/scripts/{bench,lib.sh,goals.py} "$folder/tree/scripts/"
 for stub in setup build; do printf '#!/bin/sh\n' >"$folder/tree/scripts/$stub"; done
 printf '#!/bin/sh\nexit 1\n' >"$folder/tree/build/bin/bench_thing"

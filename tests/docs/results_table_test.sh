@@ -48,7 +48,7 @@ document() { printf 'before\n<!-- %s: begin -->\nold\n<!-- %s: end -->\nafter\n'
 # stamp PLAN RUNS: the first line of a sweep's results.
 stamp() { echo "# handcast sweep version=0.1.0 fingerprint=0123456789abcdef runs=$2 plan=$1"; }
 
-# results PLAN VARIANTS MM_OF_SEED_1...: a sweep of one motion, with these errors of handcast, gate and no_tracker, and 10 mm of the others.
+# results PLAN VARIANTS MM_OF_SEED_1...: a sweep of one motion, with these errors of handcast, prediction and no_tracker, and 10 mm of the others.
 results() {
   local seed=1 mm variant other lit error index=0 plan=$1 variants=$2
   shift 2
@@ -56,7 +56,7 @@ results() {
   echo "index,variant,twin.motion,twin.seed,interior_mm_mean,interior_mm_p95,lit_mm_mean,lit_mm_p95,missing,off_10mm,coverage,spill,foldovers,detector,detector_age_ms,error"
   for mm in "$@"; do
     for variant in $variants; do
-      case $variant in handcast | gate | no_tracker) other=$mm lit=5 ;; *) other=10 lit=8 ;; esac
+      case $variant in handcast | prediction | no_tracker) other=$mm lit=5 ;; *) other=10 lit=8 ;; esac
       error=
       [ -n "$other" ] || error='no hand'
       echo "$((index++)),$variant,builtin:wave,$seed,$other,20,$lit,9,0.01,0.02,0.99,0.005,0,mediapipe,16.2,$error"
@@ -132,14 +132,14 @@ table comparison_pairs "$work/model.csv" "$work/document.md" "" 20
 says "| as published (model of a detector, the paper's times) |" || fail "a paper's cascade without MediaPipe is not named so"
 
 document levers_summary
-results levers "paper bone_fit gate" 5 7 >"$work/results.csv"
+results levers "paper bone_fit prediction" 5 7 >"$work/results.csv"
 table levers_summary "$work/results.csv" "$work/document.md" "" 20
-says '(2 simulated people of 20 of the protocol): bone fit 1.00; gate, acceleration 0.60\.' || fail "the summary of the levers is wrong"
+says '(2 simulated people of 20 of the protocol): bone fit 1.00; acceleration, resting joints 0.60\.' || fail "the summary of the levers is wrong"
 
 document levers
-results levers "paper bone_fit gate" 5 7 >"$work/results.csv"
+results levers "paper bone_fit prediction" 5 7 >"$work/results.csv"
 table levers "$work/results.csv" "$work/document.md"
-says '| + bone fit | .* | 1.00 (1.00, 1.00) | paper, at our times |' && says '| + gate, acceleration: handcast | .* | 0.60 (0.50, 0.70) |' || fail "the levers are wrong"
+says '| + bone fit | .* | 1.00 (1.00, 1.00) | paper, at our times |' && says '| + acceleration, resting joints: handcast | .* | 0.60 (0.50, 0.70) |' || fail "the levers are wrong"
 
 document no_tracker
 results no_tracker "baseline handcast no_tracker" 4 6 >"$work/results.csv"
