@@ -11,7 +11,8 @@ namespace {
 constexpr double kLongestAhead_s = 0.06;
 constexpr float kOutlierSigmas = 6, kOutlier_px = 25;
 constexpr int kMostOutliers = 3;
-constexpr double kHandStartSpeed2 = 1e6;  ///< (px/s)^2; a hand may be moving when it is first seen
+/// Variance of the speed when a track starts, (px/s)^2: a hand may be moving when it is first seen.
+constexpr double kStartSpeed2 = 1e6;
 
 /// A constant-velocity Kalman filter of one point in the image, with white-noise acceleration. x
 /// and y share one covariance. A measurement that is off by more than 6 sigma and 25 px is an
@@ -25,9 +26,8 @@ class PointTrack {
 
   /// The parameters of the filter.
   struct Model {
-    double process = 0;       ///< spectral density of the acceleration, px^2/s^3
-    double noise_px = 1;      ///< standard deviation of a measurement, per axis
-    double start_speed2 = 0;  ///< variance of the speed when a track starts, (px/s)^2
+    double process = 0;   ///< spectral density of the acceleration, px^2/s^3
+    double noise_px = 1;  ///< standard deviation of a measurement, per axis
   };
   /// Adds a measurement. One that is older than the newest is ignored.
   void update(std::int64_t time_ns, glm::vec2 measured_px, const Model& model);
@@ -78,7 +78,7 @@ void PointTrack::start(std::int64_t time_ns, glm::vec2 position_px, const Model&
   time_ns_ = time_ns;
   position_px_ = position_px;
   pp_ = model.noise_px * model.noise_px;
-  vv_ = model.start_speed2;
+  vv_ = kStartSpeed2;
 }
 
 /// x += v dt; covariance C = F C F' + q [dt^3/3 dt^2/2; dt^2/2 dt], F = [1 dt; 0 1].
@@ -97,7 +97,7 @@ void PointTrack::advance(std::int64_t time_ns, double process) {
 class Kalman final : public CarryFilter {
  public:
   explicit Kalman(const config::Filter& settings)
-      : model_{settings.motion_process, settings.noise_px, kHandStartSpeed2} {}
+      : model_{settings.motion_process, settings.noise_px} {}
 
   void detection(std::int64_t, std::int64_t origin_ns, const msg::HandLandmarks& seen,
                  const TrackerAt&) override {

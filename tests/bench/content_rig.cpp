@@ -36,11 +36,9 @@ constexpr int kKills = 20;
 
 constexpr double kRefresh_hz = 120, kContent_hz = 60;
 
-/// Of all services but content.
-int priority = 0;
-
-/// Sensors and projector at rates that two cores keep beside a content.
-std::vector<std::string> settings_with(const std::string& content) {
+/// Sensors and projector at rates that two cores keep beside a content, all with this real-time
+/// priority.
+std::vector<std::string> settings_with(const std::string& content, int priority) {
   std::vector<std::string> settings{"camera.rate_hz=120",      "projector.rate_hz=120",
                                     "observer.enabled=false",  "twin.motion=builtin:wave",
                                     "content.left=" + content, "content.right=" + content};
@@ -152,9 +150,9 @@ struct Compared {
   int frames = 0;                           ///< with each of them, about
 };
 
-Compared compare(const RigFolder& folder, int turns, const std::string& first,
+Compared compare(const RigFolder& folder, int turns, int priority, const std::string& first,
                  const std::string& second) {
-  const TwinRig rig(folder, settings_with(first));
+  const TwinRig rig(folder, settings_with(first, priority));
   auto board = board_of_twin();
   Compared compared;
   const auto watch = [&](const std::string& content) {
@@ -173,9 +171,10 @@ Compared compare(const RigFolder& folder, int turns, const std::string& first,
   return compared;
 }
 
-void measure_frames(const RigFolder& folder, int turns, std::vector<Goal>& goals) {
-  const auto moving = compare(folder, turns, "builtin:atlas", "waves"),
-             lit = compare(folder, turns, "builtin:atlas", "builtin:atlas | light kind=orbit");
+void measure_frames(const RigFolder& folder, int turns, int priority, std::vector<Goal>& goals) {
+  const auto moving = compare(folder, turns, priority, "builtin:atlas", "waves"),
+             lit = compare(folder, turns, priority, "builtin:atlas",
+                           "builtin:atlas | light kind=orbit");
   const auto ratios = [](const Compared& compared) {
     std::vector<double> all;
     for (std::size_t turn = 0; turn < compared.first_us.size(); ++turn)
@@ -201,12 +200,12 @@ void measure_frames(const RigFolder& folder, int turns, std::vector<Goal>& goals
                    1e-3 * (median(lit.second_us) - median(lit.first_us)), 0.15, "ms"});
 }
 
-int run(int turns, const Arguments& arguments) {
+int run(int turns, int priority, const Arguments& arguments) {
   const RigFolder folder;
   std::vector<Goal> goals;
-  if (turns > 0) measure_frames(folder, turns, goals);
+  if (turns > 0) measure_frames(folder, turns, priority, goals);
   {
-    const TwinRig rig(folder, settings_with("builtin:atlas"));
+    const TwinRig rig(folder, settings_with("builtin:atlas", priority));
     std::vector<double> first_ms, again_ms;
     {
       auto board = board_of_twin();
@@ -229,7 +228,7 @@ int run(int turns, const Arguments& arguments) {
                      median(light_ms), 1000 / kContent_hz + 1000 / kRefresh_hz, "ms"});
   }
   {
-    const TwinRig rig(folder, settings_with("waves"));
+    const TwinRig rig(folder, settings_with("waves", priority));
     const auto kills = kill_content(rig, kKills);
     fmt::print("content killed {} times: {} of {} frames dark\n", kills.kills, kills.dark,
                kills.frames);
@@ -244,10 +243,10 @@ int run(int turns, const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   handcast::bench::Arguments arguments("bench_content_rig", "Measures contents in a rig.");
-  int turns = 15;
+  int turns = 15, priority = 0;
   arguments.add("--turns N", turns, "Turns of the frames; 0: none", {0, 1000});
-  arguments.add("--priority N", handcast::bench::priority,
+  arguments.add("--priority N", priority,
                 "Real-time priority of camera, tracker, detector and projector", {0, 99});
   if (const auto code = arguments.answered(argc, argv)) return *code;
-  return handcast::bench::run(turns, arguments);
+  return handcast::bench::run(turns, priority, arguments);
 }
