@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <map>
@@ -11,6 +10,7 @@
 #include "ipc/msg/guest_picture.hpp"
 #include "services/content/contents.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/scheduling.hpp"
 
 using namespace handcast;
 using service::must;
@@ -52,7 +52,7 @@ static std::optional<msg::ContentState> last_state(const service::Context& conte
 /// Draws the contents of the hands content.rate_hz times a second, until the service ends. At low
 /// priority: where cores are short, content is late rather than the light.
 static void run_content(service::Context& context) {
-  if (::nice(10) == -1) log::debug("the priority cannot be lowered");
+  service::give_way();
   const auto& filed = context.filed();
   const auto& calibration = context.calibration();
   auto hands = must(content::Hands::load(filed, calibration));

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -10,7 +8,6 @@
 #include "config/settings/settings.hpp"
 #include "ipc/base/home.hpp"
 #include "ipc/base/join.hpp"
-#include "ipc/base/log.hpp"
 #include "renderer/hand/hand_mesh.hpp"
 #include "services/desk/cues/cue_list.hpp"
 #include "services/desk/cues/cues.hpp"
@@ -23,6 +20,7 @@
 #include "services/desk/page/page.hpp"
 #include "services/desk/rig_panel.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/scheduling.hpp"
 
 using namespace handcast;
 using service::must;
@@ -62,7 +60,7 @@ static std::vector<std::unique_ptr<desk::Surface>> open_surfaces(
 /// Opens what people work the rig with, and lets it see the hands until the service ends. At low
 /// priority: where cores are short, the desk is late rather than the light.
 static void run_desk(service::Context& context) {
-  if (::nice(10) == -1) log::debug("the priority cannot be lowered");
+  service::give_way();
   const auto& rig = context.filed();
   auto gestures = gestures_of(rig, context.calibration());
   context.stand_by();

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include <nlohmann/json.hpp>
 
 #include "config/sections/twin/world_settings.hpp"
@@ -9,6 +7,7 @@
 #include "services/observer/judge.hpp"
 #include "services/observer/score_log.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/scheduling.hpp"
 
 using namespace handcast;
 using namespace std::chrono_literals;
@@ -43,7 +42,7 @@ static void log_scores(const observer::Judge& judge, observer::ScoreLog& log,
 
 /// Scores the newest projected frame, observer.rate_hz times per second, at low priority.
 static void run_observer(service::Context& context) {
-  if (::nice(10) == -1) log::debug("the priority cannot be lowered");
+  service::give_way();
   auto judge = must(observer::open_judge(context.rig(), context.calibration(), context.epoch_ns()));
   context.stand_by();
   auto projections = must(context.reader<msg::Projection>("projection.frames"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/runtime/scheduling.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/capability.h>
 #include <sched.h>
@@ -14,6 +15,11 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <thread>
+
+#include "ipc/base/clock.hpp"
+#include "ipc/base/log.hpp"
+#include "ipc/base/unique_fd.hpp"
 
 namespace handcast::service {
 namespace {
@@ -63,6 +69,19 @@ Note lock_memory(bool wanted, std::string_view service) {
       service, std::strerror(errno));
 }
 
+/// The kernel takes one such change in 100 ms from all processes without rights.
+bool lower_session(int nice) {
+  using namespace std::chrono_literals;
+  const UniqueFd file(::open("/proc/self/autogroup", O_WRONLY | O_CLOEXEC));
+  if (!file) return errno == ENOENT;  // a kernel without autogroups
+  const auto text = std::to_string(nice);
+  for (const auto until = Deadline::in(2s); ::write(file.get(), text.data(), text.size()) < 0;) {
+    if (errno != EAGAIN || until.passed()) return false;
+    std::this_thread::sleep_for(10ms);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string try_priority(int priority) {
@@ -90,6 +109,13 @@ Result<std::vector<std::string>> apply_scheduling(const config::Process& process
                      lock_memory(process.lock_memory, service)})
     if (note) notes.push_back(*note);
   return notes;
+}
+
+void give_way() {
+  constexpr int kNice = 10;
+  if (::nice(kNice) == -1) log::debug("the priority cannot be lowered");
+  if (::getsid(0) == ::getpid() && !lower_session(kNice))
+    log::debug("the priority of the session cannot be lowered: {}", std::strerror(errno));
 }
 
 }  // namespace handcast::service

@@ -22,4 +22,9 @@ Result<void> check_scheduling(const config::Process& process, std::string_view s
 Result<std::vector<std::string>> apply_scheduling(const config::Process& process,
                                                   std::string_view service);
 
+/// Lets the other services go first where cores are short: lowers the priority of this process. If
+/// it leads its session, as a service does, also that of the session: nice(2) counts only within a
+/// session where the kernel shares the cores among sessions (autogroup, sched(7)).
+void give_way();
+
 }  // namespace handcast::service

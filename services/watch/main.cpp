@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
 #include "calib/calibration.hpp"
 #include "config/settings/frozen_file.hpp"
-#include "ipc/base/log.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/scheduling.hpp"
 #include "services/watch/night_watch.hpp"
 
 using namespace handcast;
@@ -20,7 +18,7 @@ static std::string calibration_of(const config::Rig& rig) {
 
 /// At low priority: where cores are short, the watch is late rather than the light.
 static void run_watch(service::Context& context) {
-  if (::nice(10) == -1) log::debug("the priority cannot be lowered");
+  service::give_way();
   const auto& rig = context.filed();
   context.stand_by();
   watch::Lights lights(must(config::LiveBoard::open(rig.name)));

@@ -121,5 +121,33 @@ TEST(Scheduling, WhatIsNotPermittedIsANoteAndNotAFailure) {
   EXPECT_EXIT(without_rights(), ExitedWithCode(0), "");
 }
 
+/// The nice value of the session's autogroup; empty without autogroups.
+std::string nice_of_session() {
+  std::ifstream file("/proc/self/autogroup");
+  std::string name, word, value;
+  file >> name >> word >> value;
+  return value;
+}
+
+TEST(Scheduling, AServiceGivesWayWithItsSessionAndAnotherProcessAlone) {
+  if (nice_of_session().empty()) GTEST_SKIP() << "this kernel has no autogroups";
+  const auto member = [] {
+    const auto before = nice_of_session();
+    give_way();
+    expect(getpriority(PRIO_PROCESS, 0) == 10, "the process keeps its priority");
+    expect(nice_of_session() == before, "the session of somebody else is slower now");
+    _exit(0);
+  };
+  EXPECT_EXIT(member(), ExitedWithCode(0), "");
+  const auto leader = [] {
+    expect(setsid() == getpid(), "no session");
+    give_way();
+    expect(getpriority(PRIO_PROCESS, 0) == 10, "the process keeps its priority");
+    expect(nice_of_session() == "10", "other sessions still wait as long for this one");
+    _exit(0);
+  };
+  EXPECT_EXIT(leader(), ExitedWithCode(0), "");
+}
+
 }  // namespace
 }  // namespace handcast::service
