@@ -7,6 +7,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "services/runtime/context.hpp"
+#include "services/runtime/scheduling.hpp"
 #include "supervisor/look/metrics/metrics.hpp"
 
 using namespace handcast;
@@ -25,7 +26,9 @@ static Result<supervisor::MetricsServer> open_server(const config::Rig& rig,
   }
 }
 
+/// At low priority: where cores are short, figures are late rather than the light.
 static void run_exporter(service::Context& context) {
+  service::give_way();
   if (context.rig().supervisor.metrics_port == 0)
     service::give_up(
         {Errc::bad_config, "supervisor.metrics_port is 0; set it to the port for the metrics"});
