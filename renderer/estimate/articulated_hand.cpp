@@ -64,8 +64,7 @@ ArticulatedHand::ArticulatedHand(const HandJoints& reported, const HandErrors& e
     : reported_(reported), joints_(reported), flexions_(flexions_of(reported)) {
   for (int landmark = 0; landmark < kLandmarks; ++landmark) {
     const auto joint = joint_of_landmark(landmark);
-    joints_.at_m[joint] +=
-        reported.axes[joint] * (own_share(landmark) * vector_at(errors, error::place_of(landmark)));
+    joints_.at_m[joint] += reported.axes[joint] * vector_at(errors, error::place_of(landmark));
   }
   for (int finger = 0; finger < kFingers; ++finger) bend(finger, errors);
   place(errors);

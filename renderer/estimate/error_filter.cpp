@@ -12,6 +12,7 @@ namespace {
 constexpr auto kErrors = static_cast<Eigen::Index>(error::kCount);
 constexpr Eigen::Index kNumbers = 2 * kLandmarks;  ///< of a detection
 constexpr double kNotSeen_px = 1e4;
+constexpr std::size_t kWristJoint = 1;
 
 constexpr double square(double x) { return x * x; }
 constexpr Eigen::Index index(std::size_t error) { return static_cast<Eigen::Index>(error); }
@@ -35,9 +36,10 @@ ErrorFilter::ErrorFilter()
 
 void ErrorFilter::begin() {
   errors_.fill(0);
+  usual_sigma_m_ = 0;
   covariance_.setZero();
   sigma_px_.fill(kUnknownSigma_px);
-  for_priors([this](const ErrorPrior& prior) { set_variance(prior); });
+  for_priors(usual_sigma_m_, [this](const ErrorPrior& prior) { set_variance(prior); });
   for (int finger = 0; finger < kFingers; ++finger) add_bends(finger, 1);
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
     set_variance(seen_prior(landmark, sigma_px_[landmark]));
@@ -52,7 +54,7 @@ HandErrors ErrorFilter::kept_after(double seconds) const {
     for (std::size_t i = prior.first; i < prior.first + static_cast<std::size_t>(prior.count); ++i)
       kept[i] = std::abs(errors_[i]) > kHuber * prior.sd ? gross : usual;
   };
-  for_priors([&](const ErrorPrior& prior) { fade(prior); });
+  for_priors(usual_sigma_m_, [&](const ErrorPrior& prior) { fade(prior); });
   fade({error::kBend, kFingers * kBendsOfFinger, std::hypot(kSharedBend_rad, kOwnBend_rad),
         kPosture_s});
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
@@ -82,7 +84,7 @@ void ErrorFilter::pass(double seconds, const Flexions& flexions) {
   const auto add = [&](const ErrorPrior& prior) {
     covariance_.diagonal().segment(index(prior.first), prior.count).array() += prior.added(seconds);
   };
-  for_priors(add);
+  for_priors(usual_sigma_m_, add);
   const double renewed = 1 - std::exp(-2 * seconds / kPosture_s);
   for (int finger = 0; finger < kFingers; ++finger)
     add_bends(finger, renewed * square(1 + (kFoldedBend - 1) * folded(flexions[finger])));
@@ -95,7 +97,7 @@ void ErrorFilter::forget_place() {
   std::fill_n(errors_.begin(), kForgotten, 0);
   covariance_.topRows(kForgotten).setZero();
   covariance_.leftCols(kForgotten).setZero();
-  for_priors([&](const ErrorPrior& prior) {
+  for_priors(usual_sigma_m_, [&](const ErrorPrior& prior) {
     if (index(prior.first) < kForgotten) set_variance(prior);
   });
   set_variance({error::kShift, 3, kJump_m, kLasting_s});
@@ -111,14 +113,39 @@ void ErrorFilter::set_noise(const msg::HandLandmarks& seen) {
   }
 }
 
+/// Learns how wrong the detector usually says that its landmarks are.
+void ErrorFilter::learn_sigma(const calib::CameraModel& camera, const HandJoints& reported) {
+  constexpr double kNews = 1e-3;  // of an image
+  double sum_px = 0;
+  for (const double sigma_px : sigma_px_) sum_px += sigma_px;
+  const double sigma_m = sum_px / kLandmarks * reported.at_m[kWristJoint].z / camera.fx_px;
+  if (usual_sigma_m_ > 0) {
+    usual_sigma_m_ += kNews * (sigma_m - usual_sigma_m_);
+    return;
+  }
+  usual_sigma_m_ = sigma_m;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    set_variance(place_prior(landmark, sigma_m));
+}
+
+/// Without the places of joints that are the detector's errors.
+HandErrors ErrorFilter::of_tracker(HandErrors errors) const {
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) {
+    const double share = own_share(landmark, usual_sigma_m_);
+    for (std::size_t axis = 0; axis < 3; ++axis) errors[error::place_of(landmark) + axis] *= share;
+  }
+  return errors;
+}
+
 /// Sets how far the landmarks are from where the errors put them, and the derivatives.
 void ErrorFilter::linearise(const calib::CameraModel& camera, const HandJoints& reported,
                             const msg::HandLandmarks& seen) {
-  const ArticulatedHand hand(reported, errors_);
+  const auto own = of_tracker(errors_);
+  const ArticulatedHand hand(reported, own);
   for (int landmark = 0; landmark < kLandmarks; ++landmark) {
     const auto joint = joint_of_landmark(landmark);
-    const glm::dvec3 beside =
-        (1 - own_share(landmark)) * vector_at(errors_, error::place_of(landmark));
+    const auto place = error::place_of(landmark);
+    const glm::dvec3 beside = vector_at(errors_, place) - vector_at(own, place);
     const glm::dvec3 at_m = hand.joints().at_m[joint] + hand.joints().axes[joint] * beside;
     add_slopes(landmark, camera.jacobian_px_per_m(hand.rigid_m(joint)), hand);
     const auto error = error::seen_of(landmark);
@@ -266,6 +293,7 @@ void ErrorFilter::doubt_landmarks(const AbruptLandmarks& abrupt) {
 bool ErrorFilter::update(const calib::CameraModel& camera, const HandJoints& reported,
                          const msg::HandLandmarks& seen, AbruptLandmarks abrupt) {
   set_noise(seen);
+  learn_sigma(camera, reported);
   expect(camera, reported, seen);
   if (is_contradicted()) return false;
   const bool is_freed = free_fingers(abrupt), is_ended = end_errors(abrupt),
@@ -292,7 +320,7 @@ void ErrorFilter::reduce_covariance() {
 HandErrors ErrorFilter::errors_after(double seconds) const {
   auto errors = kept_after(seconds);
   for (std::size_t i = 0; i < errors.size(); ++i) errors[i] *= errors_[i];
-  return errors;
+  return of_tracker(errors);
 }
 
 }  // namespace handcast::renderer

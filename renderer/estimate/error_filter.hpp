@@ -30,7 +30,7 @@ class ErrorFilter {
   bool update(const calib::CameraModel& camera, const HandJoints& reported,
               const msg::HandLandmarks& seen, AbruptLandmarks abrupt);
 
-  /// The errors that are expected after a time in which nothing is seen.
+  /// The tracker's errors that are expected after a time in which nothing is seen.
   HandErrors errors_after(double seconds) const;
 
  private:
@@ -57,9 +57,13 @@ class ErrorFilter {
   void doubt_landmarks(const AbruptLandmarks& abrupt);
   void reduce_covariance();
 
+  void learn_sigma(const calib::CameraModel& camera, const HandJoints& reported);
+  HandErrors of_tracker(HandErrors errors) const;
+
   HandErrors errors_{};
   Matrix covariance_;
   std::array<double, kLandmarks> sigma_px_;  ///< of the newest landmarks
+  double usual_sigma_m_ = 0;                 ///< of the detector, on the hand; 0: nothing was seen
 
   /// Work of an update, by number of a detection: its noise, its distance from what is expected,
   /// the covariance of that, its derivatives, and the covariance of the errors times them.

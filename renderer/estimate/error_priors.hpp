@@ -72,13 +72,17 @@ inline constexpr std::int64_t kMoved_ns = 1'000'000'000;
 inline constexpr double kFreedBend_rad = 40 * kDegree, kFreedSpread_rad = 20 * kDegree,
                         kFreed_m = 0.02;
 
-/// Calls `visit` with the priors of all errors but bends and those of the detector.
+/// The prior of a joint's place. `sigma_m`: see seen_place_m().
+inline ErrorPrior place_prior(int landmark, double sigma_m) {
+  return {error::place_of(landmark), 3, std::hypot(kOwnPlace_m, seen_place_m(landmark, sigma_m)),
+          kLasting_s};
+}
+
+/// Calls `visit` with the priors of all errors but bends and those of the detector in an image.
 template <class Visit>
-void for_priors(const Visit& visit) {
+void for_priors(double sigma_m, const Visit& visit) {
   for (const auto& prior : kErrorPriors) visit(prior);
-  for (int landmark = 0; landmark < kLandmarks; ++landmark)
-    visit(ErrorPrior{error::place_of(landmark), 3, std::hypot(kOwnPlace_m, seen_place_m(landmark)),
-                     kLasting_s});
+  for (int landmark = 0; landmark < kLandmarks; ++landmark) visit(place_prior(landmark, sigma_m));
   visit(ErrorPrior{error::kDrift, 2 * kLandmarks, kDrift_m, kDrift_s});
 }
 

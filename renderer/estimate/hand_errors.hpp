@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <span>
@@ -29,8 +30,8 @@ inline constexpr std::size_t kBend = kMissing + kFingers;
 inline constexpr std::size_t kSpread = kBend + kFingers * kBendsOfFinger;
 /// By landmark: its joint, displaced for a moment along the camera's x and y, m.
 inline constexpr std::size_t kDrift = kSpread + kFingers;
-/// By landmark, in the axes of its joint, m: where the detector sees the joint. A part of it is the
-/// tracker's error, own_share().
+/// By landmark, in the axes of its joint, m: displaced, as the detector sees it. A part of it is
+/// the tracker's error, own_share().
 inline constexpr std::size_t kPlace = kDrift + 2 * kLandmarks;
 /// By landmark: the detector's error of the moment, px.
 inline constexpr std::size_t kSeen = kPlace + 3 * kLandmarks;
@@ -68,12 +69,16 @@ inline glm::dvec3 vector_at(const HandErrors& errors, std::size_t first) {
 /// joints cause, and of where a detector sees it. Detectors define wrist and root of the thumb each
 /// in their own way.
 inline constexpr double kOwnPlace_m = 0.002, kSeenPlace_m = 0.0025, kSeenRoot_m = 0.008;
-constexpr double seen_place_m(int landmark) { return landmark < 2 ? kSeenRoot_m : kSeenPlace_m; }
+/// Of a detector's sigma, this share is where it sees the joints of one person.
+inline constexpr double kSeenShare = 0.5;
+/// `sigma_m`: the detector's usual sigma, on the hand.
+inline double seen_place_m(int landmark, double sigma_m) {
+  return std::hypot(landmark < 2 ? kSeenRoot_m : kSeenPlace_m, kSeenShare * sigma_m);
+}
 /// The share of error::kPlace that is most likely the tracker's.
-constexpr double own_share(int landmark) {
-  const double own = kOwnPlace_m * kOwnPlace_m,
-               seen = seen_place_m(landmark) * seen_place_m(landmark);
-  return own / (own + seen);
+inline double own_share(int landmark, double sigma_m) {
+  const double own = kOwnPlace_m * kOwnPlace_m, seen = seen_place_m(landmark, sigma_m);
+  return own / (own + seen * seen);
 }
 
 }  // namespace handcast::renderer

@@ -99,11 +99,7 @@ TEST_P(Articulated, ErrorsDoNotChangeTheLengthsOfBones) {
 
 /// The place at which a detector is expected to see a landmark.
 glm::dvec3 seen_at(const HandJoints& reported, const HandErrors& errors, int landmark) {
-  const ArticulatedHand hand(reported, errors);
-  const auto j = joint_of_landmark(landmark);
-  return hand.joints().at_m[j] +
-         hand.joints().axes[j] *
-             ((1 - own_share(landmark)) * vector_at(errors, error::place_of(landmark)));
+  return ArticulatedHand(reported, errors).joints().at_m[joint_of_landmark(landmark)];
 }
 
 /// The derivatives of a landmark's place by all errors.

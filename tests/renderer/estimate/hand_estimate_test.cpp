@@ -66,7 +66,7 @@ class Estimate : public ::testing::Test {
     for (int i = 0; i < kLandmarks; ++i) {
       noise_[i] = kept * noise_[i] + renewed * glm::vec2(normal(random_), normal(random_));
       const glm::vec2 at = px[i] + noise_px * noise_[i];
-      seen.points[i] = {at.x, at.y, 1, kSigma_px};
+      seen.points[i] = {at.x, at.y, 1, sigma_px_};
     }
     return seen;
   }
@@ -106,6 +106,7 @@ class Estimate : public ::testing::Test {
 
   std::mt19937 random_{5};
   LandmarkPoints noise_{};  ///< in standard deviations
+  float sigma_px_ = kSigma_px;
   const HandMesh mesh_ = *load_hand_or_default({}, Side::left);
   const calib::Calibration calibration_ = [] {
     calib::Calibration calibration;
@@ -188,6 +189,28 @@ TEST_F(Estimate, AJointThatDriftsByItselfIsPutBackAndTheOthersStay) {
   const auto hand = corrected(reported), right = truth(time_ns_);
   for (const int landmark : {5, 6, 7, 8, 12})
     EXPECT_LT(1e3f * glm::distance(at(hand, landmark), at(right, landmark)), 2) << landmark;
+}
+
+/// A detector defines joints in its own way, and the less sure it is the more.
+TEST_F(Estimate, AJointThatAnUnsureDetectorSeesElsewhereStays) {
+  constexpr int kKnuckle = 9;
+  constexpr float kBeside_px = 6;
+  const auto moved_mm = [&](float sigma_px) {
+    sigma_px_ = sigma_px;
+    estimate_ = HandEstimate(calibration_);
+    for (int i = 0; i < 1500; ++i, time_ns_ += kStep_ns) {
+      report(truth(time_ns_));
+      auto landmarks = seen(truth(time_ns_));
+      landmarks.points[kKnuckle].x_px += kBeside_px;
+      estimate_.detection(time_ns_, landmarks);
+      estimate_.look_back(track_);
+    }
+    time_ns_ -= kStep_ns;
+    const auto pose = truth(time_ns_);
+    return 1e3f * glm::distance(at(corrected(pose), kKnuckle), at(pose, kKnuckle));
+  };
+  const float sure_mm = moved_mm(2), unsure_mm = moved_mm(12);
+  EXPECT_LT(unsure_mm, 0.75f * sure_mm);
 }
 
 TEST_F(Estimate, AFingerThatTheTrackerTakesForAnotherIsWhereTheLandmarksAre) {
