@@ -2,9 +2,13 @@
 #include "supervisor/rig/reload_plan.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 
+#include "config/live/live_board.hpp"
+#include "config/live/live_values.hpp"
+#include "config/settings/settings.hpp"
 #include "supervisor/spec/catalogue.hpp"
 #include "supervisor/spec/fingerprint.hpp"
 
@@ -30,10 +34,43 @@ config::Rig with_swaps(const LiveRig& rig, config::Rig wanted) {
   return wanted;
 }
 
+/// The applied rig with its live settings. Errors: there are none, or they do not fit.
+Result<config::Rig> as_it_runs(const LiveRig& rig) {
+  const auto fd = daemon::find_ring(rig.rings.descriptors(), msg::kLiveSettings);
+  if (!fd) return fail(Errc::unavailable, "no ring");
+  auto ring = ipc::Segment::open(UniqueFd(::dup(*fd)));
+  if (!ring) return tl::make_unexpected(ring.error());
+  const auto live = config::LiveBoard(std::move(*ring), {}, {}).now();
+  if (!live) return tl::make_unexpected(live.error());
+  return config::with_live(rig.config, live->values.view());
+}
+
+/// The wanted rig, with the applied rig's values of the live settings that have the wanted ones
+/// already, e.g. after `handcast save`: such a setting restarts nobody.
+config::Rig without_what_runs(const LiveRig& rig, config::Rig wanted) {
+  auto running = as_it_runs(rig);
+  if (!running) return wanted;
+  auto applied = rig.config;
+  const auto before = config::list_settings(applied), now = config::list_settings(*running),
+             next = config::list_settings(wanted);
+  std::string kept;
+  for (std::size_t s = 0; s < next.size(); ++s)
+    for (std::size_t i = 0; i < next[s].settings.size(); ++i) {
+      const auto& setting = next[s].settings[i];
+      const auto value = config::print_value(setting),
+                 old = config::print_value(before[s].settings[i]);
+      const bool runs = setting.effect == config::Effect::live &&
+                        value == config::print_value(now[s].settings[i]);
+      if (runs && value != old) kept += fmt::format("{} = {}\n", setting.path, old);
+    }
+  return kept.empty() ? wanted : config::with_live(wanted, kept).value_or(wanted);
+}
+
 }  // namespace
 
 ReloadPlan plan_reload(const LiveRig& rig, config::Rig wanted, bool revives) {
   ReloadPlan plan;
+  wanted = without_what_runs(rig, std::move(wanted));
   plan.specs = services_of(with_swaps(rig, wanted), rig.catalogue);
   plan.changed = config::print_rig(wanted) != config::print_rig(rig.config);
   plan.config = std::move(wanted);

@@ -9,7 +9,7 @@ namespace handcast::supervisor {
 
 /// The steps of a reload.
 struct ReloadPlan {
-  config::Rig config;              ///< the new rig, as the file has it
+  config::Rig config;              ///< the new rig; live values that run already are not in it
   std::vector<ServiceSpec> specs;  ///< its services, with the back ends that were swapped
   bool changed = false;            ///< the new rig differs from the applied one
   /// Names of services.
@@ -19,7 +19,8 @@ struct ReloadPlan {
 };
 
 /// Plans a reload to the rig `wanted`. Services whose fingerprints changed are restarted; if
-/// `revives` is set, failed and degraded ones are restarted, too. Changes nothing.
+/// `revives` is set, failed and degraded ones are restarted, too. A live setting that has the
+/// wanted value already restarts nobody. Changes nothing.
 ReloadPlan plan_reload(const LiveRig& rig, config::Rig wanted, bool revives);
 
 /// Checks that the plan can be applied while the rig is up. Changes nothing. Errors: bad_config,

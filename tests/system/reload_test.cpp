@@ -98,6 +98,19 @@ TEST_F(Reload, AFileThatSaysTheSameChangesNothing) {
   EXPECT_TRUE(changed_since(before).empty());
 }
 
+TEST_F(Reload, WhatWasSetAndSavedRestartsNobody) {
+  write_rig_with(kCalm, kNoObserver);
+  const auto rig = up_with_the_file();
+  const auto before = processes();
+  ASSERT_EQ(handcast({"set", "projector.brightness=0.5", "content.shading=0.25"}).exit_code, 0);
+  ASSERT_EQ(handcast({"save"}).exit_code, 0);
+  EXPECT_EQ(handcast({"reload"}).output, "nothing changed\n");
+  EXPECT_TRUE(changed_since(before).empty());
+  ASSERT_EQ(handcast({"undo"}).exit_code, 0);
+  EXPECT_THAT(handcast({"get", "projector.brightness"}).output,
+              HasSubstr("projector.brightness = 1"));
+}
+
 TEST_F(Reload, ABrokenFileChangesNothingAndNamesAllItsProblemsWithTheirLines) {
   write_rig_with(kCalm, kNoObserver);
   const auto rig = up_with_the_file();

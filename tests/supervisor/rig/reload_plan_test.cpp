@@ -2,7 +2,9 @@
 #include "supervisor/rig/reload_plan.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
+#include "config/live/live_board.hpp"
 #include "tests/supervisor/spec/built_catalogue.hpp"
 
 namespace handcast::supervisor {
@@ -32,6 +34,15 @@ class Plan : public testing::Test {
                      .state = state,
                      .swapped = std::move(swapped),
                      .fingerprint = service.spec().fingerprint});
+  }
+
+  /// What people change while the rig is up.
+  void set(const std::string& assignment) {
+    if (!rig_.make_rings({})) throw std::runtime_error("no rings");
+    const auto fd = *daemon::find_ring(rig_.rings.descriptors(), msg::kLiveSettings);
+    config::LiveBoard board(*ipc::Segment::open(UniqueFd(::dup(fd))), rig_.config, {});
+    const auto done = board.set({&assignment, 1}, "test");
+    if (!done) throw std::runtime_error(done.error().what);
   }
 
   EventLoop loop_ = EventLoop::open().value();
@@ -86,6 +97,24 @@ TEST_F(Plan, ASwappedBackEndStaysUntilTheFileNamesAnother) {
   auto wanted = desk();
   wanted.camera.backend = "file";
   EXPECT_EQ(backend(plan_reload(rig_, wanted, true)), "file");
+}
+
+TEST_F(Plan, ALiveSettingThatRunsAlreadyRestartsNobodyAndFallsBackAsBefore) {
+  set("projector.brightness=0.5");
+  auto wanted = desk();
+  wanted.projector.brightness = 0.5;  // as after `handcast save`
+  auto plan = plan_reload(rig_, wanted, true);
+  EXPECT_FALSE(plan.changed);
+  EXPECT_THAT(plan.restarted, IsEmpty());
+  EXPECT_EQ(plan.config.projector.brightness, desk().projector.brightness);
+
+  wanted.camera.rate_hz += 10;
+  EXPECT_THAT(plan_reload(rig_, wanted, true).restarted, ElementsAre("camera", "landmarks"));
+  wanted = desk();
+  wanted.projector.brightness = 0.25;
+  plan = plan_reload(rig_, wanted, true);
+  EXPECT_THAT(plan.restarted, testing::Contains("projector"));
+  EXPECT_EQ(plan.config.projector.brightness, 0.25);
 }
 
 TEST_F(Plan, ARigKeepsItsNameWhileItIsUp) {
