@@ -56,9 +56,11 @@ bool ServiceTable::has_come_up(std::int64_t now) const {
   });
 }
 
+/// One that was begun without its own needs, because their time was over, gets no time of its own.
 bool ServiceTable::need_not_be_waited_for(const Service& service, std::int64_t now) const {
   if (service.state() != State::starting && service.state() != State::stopping) return true;
-  return service.first_start_ns() &&
+  if (!service.first_start_ns()) return false;
+  return !needs_are_ready(service) ||
          now - *service.first_start_ns() > seconds_to_ns(launch_.ready_s);
 }
 

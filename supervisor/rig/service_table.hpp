@@ -32,7 +32,8 @@ class ServiceTable {
   /// True if all services that this one needs are ready.
   bool needs_are_ready(const Service& service) const;
   /// The first held service whose needs are met; null if there is none. A need is met if its
-  /// service is ready, has given up, or was started more than ready_s ago.
+  /// service is ready, has given up, was started more than ready_s ago, or was started and has not
+  /// its own needs.
   Service* next_to_begin(std::int64_t now_ns) const;
   /// True if each service has been ready, has given up, or was started more than ready_s ago.
   bool has_come_up(std::int64_t now_ns) const;

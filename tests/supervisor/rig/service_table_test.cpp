@@ -83,6 +83,17 @@ TEST_F(Table, ANeedIsWaitedForAsLongAsItMayTakeToBeReady) {
   EXPECT_EQ(table_.next_to_begin(started_ns + seconds_to_ns(21)), &landmarks);
 }
 
+TEST_F(Table, ANeedThatWasBegunWithoutItsOwnNeedGetsNoTimeOfItsOwn) {
+  launch_.ready_s = 0.3;
+  auto& camera = add("camera", {}, kSleepsForEver);
+  auto& landmarks = add("landmarks", {"camera"}, kSleepsForEver);
+  auto& projector = add("projector", {"camera", "landmarks"}, kWorks);
+  camera.start();
+  run_until([&] { return next() == &landmarks; });
+  landmarks.start();
+  EXPECT_EQ(next(), &projector);
+}
+
 TEST_F(Table, ANeedThatIsNotInTheRigIsNoNeed) {
   auto& observer = add("observer", {"projector"}, kWorks);
   EXPECT_EQ(next(), &observer);
