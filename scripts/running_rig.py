@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A running rig and its processes, for scripts/soak and scripts/storm. Uses only the standard library."""
+"""A running rig and its processes, for scripts/soak, scripts/storm and scripts/night. Uses only the standard library."""
 import argparse
 import json
 import os
@@ -69,8 +69,9 @@ class Rig:
         return answer.returncode, answer.stdout
 
     def status(self):
-        code, output = self.run("status", "--json")
-        return json.loads(output) if code == 0 else None
+        """None if no supervisor answers. That a service is not well is an exit code, too."""
+        _, output = self.run("status", "--json")
+        return json.loads(output) if output else None
 
     def wait_until_ready(self):
         limit = time.monotonic() + 60

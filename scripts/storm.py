@@ -37,23 +37,29 @@ def role_of(arguments):
 
 
 class Folder:
-    """A small file system for the temporary files of a rig, or a plain folder where none may be mounted."""
+    """A small file system for the files of a rig, or a plain folder where none may be mounted."""
 
-    def __init__(self):
-        self.path = pathlib.Path(tempfile.mkdtemp(prefix="handcast-storm-"))
+    def __init__(self, size=1 << 16):
+        self.size, self.path = size, pathlib.Path(tempfile.mkdtemp(prefix="handcast-storm-"))
         self.path.chmod(0o777)
-        mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", self.path]
+        mount = ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", self.path]
         self.mounted = subprocess.run(mount, capture_output=True).returncode == 0
         if not self.mounted:
-            print("storm: no file system may be mounted here; the disk is not filled")
+            print("no file system may be mounted here; the disk is not filled")
 
     def fill(self):
         """Returns whether the file system could be filled."""
-        try:
-            (self.path / "full").write_bytes(bytes(1 << 20 if self.mounted else 0))
-        except OSError:
-            return True
+        with open(self.path / "full", "wb", buffering=0) as file:
+            try:
+                for _ in range(2 * self.size >> 16 if self.mounted else 0):
+                    file.write(bytes(1 << 16))
+            except OSError:
+                return True
         return False
+
+    def relax(self):
+        """There is room again."""
+        (self.path / "full").unlink(missing_ok=True)
 
     def empty(self):
         for entry in self.path.iterdir():

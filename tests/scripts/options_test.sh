@@ -17,7 +17,7 @@ need_value --out dir
 for words in --out "--out="; do
   [[ $(scripts/package "$words" 2>&1) == *"--out needs a value"* ]] || { echo "scripts/package $words: not refused"; exit 1; }
 done
-for script in demo bench package results get-models train-landmarks; do
+for script in demo bench package results get-models night train-landmarks; do
   [[ $("scripts/$script" -h) == "scripts/$script"* ]] || { echo "scripts/$script -h: no help"; exit 1; }
 done
 # refused SENTENCE SCRIPT...: a wrong argument is refused before anything is installed or built.
@@ -33,5 +33,6 @@ refused "'ten' is no number" scripts/soak --minutes ten
 refused "there is no file 'none.toml'" scripts/soak --rig none.toml
 refused "--evry" scripts/soak --evry 2
 refused "'0' is no number" scripts/storm --minutes 0
+refused "'-1' is no number" scripts/night --minutes=-1
 refused "'0.0' is no number above 0" scripts/demo --seconds 0.0
 refused "there is no 'builtin:waves'" scripts/demo --motion builtin:waves
