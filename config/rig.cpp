@@ -142,6 +142,19 @@ void check_together(const Rig& rig, std::string_view file, Faults& faults) {
                     file, correct.bone_short_px, correct.bone_long_px));
 }
 
+/// What a file is that was taken for a rig file; "" if it may be one.
+std::string_view other_kind(const Table& document) {
+  for (const auto& [name, value] : document) {
+    if (name == "rig" || name == "variant")
+      return "is a plan, not a rig file; `handcast sweep` takes it, and checks it with --list";
+    const auto* members = std::get_if<Table>(&value.data);
+    if (name == "camera" && members &&
+        std::ranges::find(*members, "width_px", &Member::name) != members->end())
+      return "is a calibration, not a rig file, which names one as `calibration`";
+  }
+  return {};
+}
+
 /// The values of the last text win over those of the others and of `rig`, and `settings` over all.
 /// The first text is named by faults between settings.
 Result<Rig> parse_layers(Rig rig, std::span<const NamedText> layers,
@@ -154,6 +167,8 @@ Result<Rig> parse_layers(Rig rig, std::span<const NamedText> layers,
   for (const auto& [file, toml] : layers) {
     const auto document = parse_document(toml, file);
     if (!document) return tl::make_unexpected(document.error());
+    if (const auto kind = other_kind(std::get<Table>(document->data)); !kind.empty())
+      return fail(Errc::bad_config, fmt::format("{} {}", file, kind));
     apply_document(*document, file, listing, faults);
     const auto folder = std::filesystem::absolute(file, gone).parent_path();
     resolve_paths(listing, folder, file, faults);

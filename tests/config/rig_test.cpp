@@ -81,6 +81,13 @@ TEST(Rig, AFileOfAnotherKindIsNotPrintedBackWhole) {
   EXPECT_EQ(faults.back(), "and 4900 more errors");
 }
 
+TEST(Rig, AFileOfAnotherKindIsNamed) {
+  EXPECT_THAT(faults_of("rig = \"../rigs/twin.toml\"\nseconds = 5\n"),
+              ElementsAre(HasSubstr("/rigs/test.toml is a plan, not a rig file")));
+  EXPECT_THAT(faults_of("[[variant]]\nname = \"a\"\n"), ElementsAre(HasSubstr("is a plan")));
+  EXPECT_THAT(faults_of("[camera]\nwidth_px = 720\n"), ElementsAre(HasSubstr("is a calibration")));
+}
+
 TEST(Rig, AnUnknownSectionIsOneFaultWithASuggestion) {
   EXPECT_THAT(
       faults_of("[camrea]\nrate_hz = 1\nexposure_ms = 2\n"),
