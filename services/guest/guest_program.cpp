@@ -144,10 +144,11 @@ std::optional<std::string> GuestProgram::end() {
   kill_group(std::exchange(pid_, -1));
   read_some();
   lines_.finish(now_ns());
-  const auto last = lines_.last();
-  return last.empty() ? describe_end(status)
-                      : fmt::format("{}: {}", describe_end(status), printable(last));
+  const auto last = last_line();
+  return last.empty() ? describe_end(status) : fmt::format("{}: {}", describe_end(status), last);
 }
+
+std::string GuestProgram::last_line() const { return printable(lines_.last()); }
 
 void GuestProgram::stop(Deadline deadline) {
   if (pid_ <= 0) return;
@@ -156,6 +157,8 @@ void GuestProgram::stop(Deadline deadline) {
   if (pid_ <= 0) return;
   kill_group(pid_);
   waitpid(std::exchange(pid_, -1), nullptr, 0);
+  read_some();
+  lines_.finish(now_ns());
 }
 
 Result<void> check_command(const config::External& settings) {

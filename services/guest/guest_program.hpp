@@ -36,6 +36,8 @@ class GuestProgram {
   void pass_on_output(Deadline deadline);
   /// How it ended and its last line: "exit 1: No module named 'torch'"; empty while it runs.
   std::optional<std::string> end();
+  /// The last line that it has printed, for people; "" if there is none.
+  std::string last_line() const;
   /// Asks it to end (SIGTERM), and kills it at the deadline.
   void stop(Deadline deadline);
 

@@ -55,7 +55,9 @@ static void run_guest(service::Context& context, const config::Guest& guest) {
     if (!is_ready && watch.has_sent()) context.ready(), is_ready = true;
     if (const auto fault = watch.fault(now_ns())) {
       program->stop(Deadline::in(200ms));
-      give_in("the program is started again: " + *fault);
+      const auto last = program->last_line();
+      give_in(fmt::format("the program is started again: {}{}{}", *fault,
+                          last.empty() ? "" : "; its last line: ", last));
     }
   }
   program->stop(Deadline::in(1s));

@@ -126,9 +126,12 @@ TEST_F(Guest, OneThatFallsSilentIsStartedAgain) {
   const auto rig = up_with_script(
       "import time, handcast\n"
       "handcast.Rig().pose.publish({}, handcast.now_ns())\n"
+      "print('waits for its device')\n"
       "time.sleep(1000)\n",
       {"--set", "pose.external.silent_s=1"});
-  EXPECT_TRUE(is_said("it has sent nothing to guest.pose for 1 s")) << rig->log();
+  EXPECT_TRUE(
+      is_said("it has sent nothing to guest.pose for 1 s; its last line: waits for its device"))
+      << rig->log();
   expect_no_harm();
 }
 

@@ -74,13 +74,14 @@ TEST_F(GuestProgramTest, ItRunsInItsFolder) {
 }
 
 TEST_F(GuestProgramTest, OneThatDoesNotStopIsKilled) {
-  auto program =
-      GuestProgram::start(shell("trap '' TERM; echo $$ >pid; while :; do sleep 1; done"));
+  auto program = GuestProgram::start(
+      shell("trap '' TERM; echo hangs; echo $$ >pid; while :; do sleep 1; done"));
   ASSERT_TRUE(program);
   const auto pid = static_cast<pid_t>(std::stoi(text_of("pid")));
   EXPECT_EQ(kill(pid, 0), 0);
   program->stop(Deadline::in(100ms));
   EXPECT_NE(kill(pid, 0), 0);
+  EXPECT_EQ(program->last_line(), "hangs");
 }
 
 TEST_F(GuestProgramTest, WhatItHasStartedEndsWithIt) {
