@@ -132,6 +132,15 @@ function(handcast_back_ends)
   handcast_use(${target} ${scope} ${ARGN})
 endfunction()
 
+# handcast_loads_back_ends(target): the program loads back ends that are files of their own. They call its functions, and all those whose
+# headers install.cmake installs.
+function(handcast_loads_back_ends target)
+  set_property(TARGET ${target} PROPERTY ENABLE_EXPORTS ON)
+  foreach(module ipc_base ipc_shm ipc_ring config calib services_joints)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:handcast_${module}>)
+  endforeach()
+endfunction()
+
 # handcast_embed(source HEADER header NAMESPACE name FILES variable file ...): makes a source with the texts of files as constants of type
 # std::string_view, which the header declares.
 function(handcast_embed source)

@@ -46,6 +46,23 @@ foreach(module ipc/base ipc/msg ipc/shm ipc/ring ipc/client)
     FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE PATTERN c_calls.hpp EXCLUDE)
 endforeach()
 
+# What cameras and trackers of other people include, which handcast-camera and handcast-pose load: their seams, and what those include.
+# That of detectors would bring half of the renderer.
+add_library(handcast_back_end INTERFACE)
+set_target_properties(handcast_back_end PROPERTIES EXPORT_NAME back_end)
+target_link_libraries(handcast_back_end INTERFACE fmt::fmt tl::expected)
+target_compile_features(handcast_back_end INTERFACE cxx_std_20)
+target_include_directories(handcast_back_end INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/handcast>)
+install(TARGETS handcast_back_end EXPORT handcastTargets)
+install(DIRECTORY config/sections DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/config COMPONENT dev FILES_MATCHING PATTERN *.hpp)
+foreach(header
+    calib/calibration.hpp calib/projector_model.hpp config/rig.hpp config/settings/field.hpp config/settings/frozen_file.hpp
+    config/settings/setting_list.hpp ipc/daemon/back_end_files.hpp ipc/daemon/description.hpp services/camera/camera.hpp services/joints/conventions.hpp
+    services/pose/pose_source.hpp services/runtime/backends.hpp)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/${folder} COMPONENT dev)
+endforeach()
+
 # The library for programs that draw, in any language.
 install(TARGETS handcast_c EXPORT handcastTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT dev

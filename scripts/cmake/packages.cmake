@@ -60,7 +60,7 @@ handcast_package(dev libhandcast-dev libdevel "light on moving hands: developmen
 "These are headers and libraries for programs in C and C++ that read a rig's
 streams, draw on the hands, or are the camera, tracker or detector."
   NEEDS library
-  DEPENDS libexpected-dev libfmt-dev)
+  DEPENDS libexpected-dev libfmt-dev libglm-dev)
 handcast_package(python python3-handcast python "light on moving hands: Python module"
 "With this module programs read a rig's streams, draw on the hands, or are the
 camera, tracker or detector."

@@ -73,6 +73,8 @@ Result<Opening> opening_of(const config::Rig& rig, const calib::Calibration& cal
 /// open_camera(), check_camera() and the service put before them. They name settings as the section
 /// of the service has them: "v4l2.format".
 using CameraBackend = service::Backend<Camera, Opening>;
+/// Of a back end that is a file of its own: camera/NAME.so.
+extern "C" const service::LoadedBackEnd<CameraBackend> handcast_camera_back_end;
 
 /// All back ends of this build.
 std::span<const CameraBackend> camera_backends();

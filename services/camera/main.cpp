@@ -57,7 +57,7 @@ static Result<std::optional<Frames>> second_frames_of(const camera::Camera& sour
 static void run_camera(service::Context& context, Viewpoint at) {
   const auto name = config::name_at(at, "camera"), ring = config::name_at(at, "camera.frames");
   const auto& backend = config::camera_at(context.rig(), at).backend;
-  if (service::is_exclusive(backend, camera::camera_backends())) context.stand_by();
+  if (service::is_exclusive(name, backend, camera::camera_backends())) context.stand_by();
   const auto source =
       must(camera::open_camera(context.rig(), context.calibration(), context.epoch_ns(), at,
                                [&](std::string_view stream) { return context.ring(stream); }));

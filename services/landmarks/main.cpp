@@ -33,7 +33,8 @@ static void run_landmarks(service::Context& context, Viewpoint at) {
   const auto name = config::name_at(at, "landmarks");
   const msg::DetectorNote note{.is_fallback = !choice.why.empty()};
   if (!choice.why.empty()) log::warning("{}", choice.why);
-  if (service::is_exclusive(choice.backend, landmarks::detector_backends())) context.stand_by();
+  if (service::is_exclusive(name, choice.backend, landmarks::detector_backends()))
+    context.stand_by();
   const auto detector =
       must(landmarks::open_detector(context.rig(), context.calibration(), context.epoch_ns(), at,
                                     [&](std::string_view stream) { return context.ring(stream); }));

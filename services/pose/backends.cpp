@@ -103,8 +103,8 @@ Result<std::unique_ptr<PoseSource>> open_pose_source(const config::Rig& rig,
 }
 
 bool is_exclusive(const config::Pose& settings) {
-  return service::is_exclusive(settings.backend, pose_backends()) ||
-         service::is_exclusive(settings.second, pose_backends());
+  return service::is_exclusive("pose", settings.backend, pose_backends()) ||
+         service::is_exclusive("pose", settings.second, pose_backends());
 }
 
 Result<void> check_pose_sources(const config::Rig& rig, const calib::Calibration& calibration) {

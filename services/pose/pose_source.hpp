@@ -62,6 +62,8 @@ struct Surroundings {
 
 /// A back end, opened with the rig, its calibration and its surroundings.
 using PoseBackend = service::Backend<PoseSource, config::Rig, calib::Calibration, Surroundings>;
+/// Of a back end that is a file of its own: pose/NAME.so.
+extern "C" const service::LoadedBackEnd<PoseBackend> handcast_pose_back_end;
 
 /// All back ends of this build.
 std::span<const PoseBackend> pose_backends();

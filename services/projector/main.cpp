@@ -25,7 +25,7 @@ static void run_projector(service::Context& context) {
         threads, cores);
   // An output that only one process may use is opened last, and has no share group.
   std::unique_ptr<projector::Projector> projector;
-  if (!service::is_exclusive(rig.projector.backend, projector::projector_backends()))
+  if (!service::is_exclusive("projector", rig.projector.backend, projector::projector_backends()))
     projector = must(projector::open_projector(rig, calibration));
   const auto shares = projector ? projector->share_group() : renderer::ShareGroup();
   const auto pipeline = must(renderer::Pipeline::create(

@@ -8,9 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "calib/calibration.hpp"
+#include "config/rig.hpp"
 #include "config/settings/setting_list.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/daemon/back_end_files.hpp"
 #include "ipc/daemon/description.hpp"
 
 namespace handcast::service {
@@ -47,6 +50,25 @@ struct Backend {
 /// Backend::check of what is seen only when the rig is up: whether a program sends.
 inline constexpr auto kSeenWhenUp = [](const auto&...) -> Result<void> { return {}; };
 
+inline constexpr daemon::Abi kAbi{"0.1.0-1", sizeof(config::Rig) + sizeof(calib::Calibration)};
+
+/// What the file of a back end exports, under the name that its seam declares. It calls the
+/// functions of the program.
+template <class Row>
+struct LoadedBackEnd {
+  daemon::Abi abi = kAbi;
+  Row row;
+};
+
+/// The row that the file of a back end exports; null if there is no such file. Errors: those of
+/// daemon::load_back_end().
+template <class Row>
+Result<const Row*> load_row(std::string_view service, std::string_view name) {
+  return daemon::load_back_end(service, name, kAbi).map([](const void* object) {
+    return object ? &static_cast<const LoadedBackEnd<Row>*>(object)->row : nullptr;
+  });
+}
+
 /// The rows of a table without their code, in its order.
 template <class Row>
 std::vector<daemon::BackendDescription> describe_rows(std::span<const Row> table) {
@@ -69,14 +91,17 @@ std::vector<std::string_view> names_of(std::span<const Row> table) {
   return names;
 }
 
-/// The back end called `name`. Errors: bad_config with the known names if there is none of this
-/// name.
+/// The back end called `name`: of the table, or else that of a file. Errors: bad_config with the
+/// known names if there is none of this name, those of load_row().
 template <class Interface, class... Args>
 Result<Backend<Interface, Args...>> find_backend(
     std::string_view what, std::string_view name,
     std::span<const Backend<Interface, Args...>> table) {
   for (const auto& row : table)
     if (row.name == name) return row;
+  const auto loaded = load_row<Backend<Interface, Args...>>(what, name);
+  if (!loaded) return fail_in(what, loaded.error());
+  if (*loaded) return **loaded;
   return fail(Errc::bad_config, fmt::format("{}: no back end '{}'; this build has: {}", what, name,
                                             join(names_of(table), ", ")));
 }
@@ -110,10 +135,10 @@ Result<T> in_backend(std::string_view service, std::string_view backend, Result<
 
 /// Whether a standby must not open this back end before its turn.
 template <class Interface, class... Args>
-bool is_exclusive(std::string_view name, std::span<const Backend<Interface, Args...>> table) {
-  for (const auto& row : table)
-    if (row.name == name) return row.exclusive;
-  return false;
+bool is_exclusive(std::string_view what, std::string_view name,
+                  std::span<const Backend<Interface, Args...>> table) {
+  const auto row = find_backend(what, name, table);
+  return row && row->exclusive;
 }
 
 }  // namespace handcast::service

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "config/rig.hpp"
 #include "ipc/base/command_line.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/daemon/back_end_files.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "services/runtime/scheduling.hpp"
 
@@ -18,6 +21,15 @@ daemon::ServiceDescription complete(daemon::ServiceDescription description) {
   settings.push_back("calibration");
   if (!description.backends.empty()) settings.push_back(description.name + ".backend");
   if (config::has_process(description.name)) settings.push_back(description.name + ".process");
+  return description;
+}
+
+/// Adds the back ends that are files of their own.
+daemon::ServiceDescription with_files(daemon::ServiceDescription description) {
+  auto& rows = description.backends;
+  for (const auto& [name, file] : daemon::back_end_files(description.name))
+    if (std::ranges::find(rows, name, &daemon::BackendDescription::name) == rows.end())
+      rows.push_back({.name = name, .sentence = "From " + file.string()});
   return description;
 }
 
@@ -62,7 +74,7 @@ Result<Options> parse_options(std::span<const Instance> instances, int argc,
   if (!text) return tl::make_unexpected(text.error());
   const auto& description = options.instance->description;
   if (!text->empty()) options.answer = std::move(*text);
-  if (!options.answer && backends) options.answer = daemon::print_backends(description);
+  if (!options.answer && backends) options.answer = daemon::print_backends(with_files(description));
   if (!options.answer && priority > 0) options.answer = try_priority(priority) + "\n";
   if (!options.answer && describe)
     options.answer = daemon::print_description(complete(description));

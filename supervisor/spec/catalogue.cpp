@@ -9,6 +9,7 @@
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/quote.hpp"
+#include "ipc/daemon/back_end_files.hpp"
 
 namespace handcast::supervisor {
 namespace {
@@ -70,8 +71,11 @@ Result<void> check_backend(const Catalogue& catalogue, const std::string& servic
   if (backends.empty()) return fail(Errc::bad_config, service + " has no back ends to choose from");
   if (std::ranges::find(backends, backend, &daemon::BackendDescription::name) != backends.end())
     return {};
-  return fail(Errc::bad_config, fmt::format("{} has no back end {}; it has: {}", service,
-                                            quote(backend), join(names_of(backends), ", ")));
+  if (daemon::back_end_files(service).contains(backend)) return {};
+  return fail(Errc::bad_config,
+              fmt::format("{} has no back end {}; it has: {}; lib/handcast has no file of this "
+                          "name",
+                          service, quote(backend), join(names_of(backends), ", ")));
 }
 
 bool is_exclusive(const Catalogue& catalogue, const std::string& service,

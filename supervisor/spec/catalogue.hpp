@@ -22,8 +22,9 @@ std::filesystem::path catalogue_folder(const std::filesystem::path& program_fold
 /// without a description counts as one that reads every setting.
 Catalogue read_catalogue(const std::filesystem::path& folder);
 
-/// Checks that a service has a back end. A service without a description passes: only its program
-/// can tell. Errors: bad_config (the sentence lists the back ends that it has).
+/// Checks that a service has a back end. A service without a description, and the file of a back
+/// end, pass: only the service's program can tell. Errors: bad_config (the sentence lists the back
+/// ends that it has).
 Result<void> check_backend(const Catalogue& catalogue, const std::string& service,
                            const std::string& backend);
 

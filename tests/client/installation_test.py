@@ -64,13 +64,13 @@ def environment(**more):
             **more}
 
 
-def run(*command, codes=(0,), **env):
+def run(*command, codes=(0,), both=False, **env):
     done = subprocess.run([str(word) for word in command], cwd=scratch, env=environment(**env),
                           capture_output=True, text=True, timeout=PATIENCE_S)
     if done.returncode not in codes:
         said = done.stdout + done.stderr
         raise AssertionError(f"{command} ended with {done.returncode}:\n{said}")
-    return done.stdout
+    return done.stdout + done.stderr if both else done.stdout
 
 
 def handcast(*arguments):
@@ -185,24 +185,7 @@ def flags(*options, package="handcast"):
     return shlex.split(said)
 
 
-class AProgramOfSomebodyElse(unittest.TestCase):
-    """One after the other, on one rig."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.by_cmake = scratch / "example/read_projections"
-        folder = cls.by_cmake.parent
-        # gcc splits a run path at its spaces.
-        run("cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, f"-DCMAKE_PREFIX_PATH={tree}", "-DCMAKE_SKIP_RPATH=ON")
-        run("cmake", "--build", folder)
-        cls.by_pkg_config = scratch / "read_projections"
-        run("g++", "-std=c++20", SOURCE / "read_projections.cpp", "-o", cls.by_pkg_config,
-            *flags("--cflags", "--libs"))
-        cls.ring_by_cmake = folder / "draw_ring"
-        cls.ring_by_pkg_config = scratch / "draw_ring"
-        run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", SOURCE / "draw_ring.c", "-o", cls.ring_by_pkg_config,
-            *flags("--cflags", "--libs", package="handcast-c"), "-lm")
-
+class WithARig(unittest.TestCase):
     def setUp(self):
         self.processes = []
         self.addCleanup(self.end_processes)
@@ -222,19 +205,129 @@ class AProgramOfSomebodyElse(unittest.TestCase):
         self.processes.append(process)
         return process
 
-    def start_python(self, name, *arguments, **more):
-        """With the Python that has numpy, if there is one."""
-        return self.start(PYTHON, SOURCE / name, *arguments, **more, LD_LIBRARY_PATH=str(libraries()),
-                          PYTHONPATH=str(tree / "share/handcast/python"))
-
     def start_rig(self, *settings, out=None):
         slow = ["camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false", *settings]
         rig = self.start(tree / "bin/handcast", "up", rig_file(),
                          *(word for setting in slow for word in ("--set", setting)), *(["--out", out] if out else []))
+        self.said = ""
         for line in rig.stdout:
+            self.said += line
             if "projector" in line and "ready" in line:
                 break
         return rig
+
+
+class ABackEndOfSomebodyElse(WithARig):
+    """The camera of docs/writing-a-back-end.md."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.source, cls.own = scratch / "noise", scratch / "own/handcast/camera"
+        cls.source.mkdir()
+        cls.own.mkdir(parents=True)
+        page = tree / "share/doc/handcast/docs/writing-a-back-end.md"
+        for name in ("noise_camera.cpp", "CMakeLists.txt"):
+            run(PYTHON, REPOSITORY / "scripts/cmake/listing.py", page, name, cls.source / name)
+        run("cmake", "-G", "Ninja", "-S", cls.source, "-B", cls.source / "build", f"-DCMAKE_PREFIX_PATH={tree}",
+            "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
+        run("cmake", "--build", cls.source / "build")
+        run("cmake", "--install", cls.source / "build")
+
+    def compile(self, name, source, *options):
+        """NAME.so in the folder of $LD_LIBRARY_PATH."""
+        run("g++", "-std=c++20", "-shared", "-fPIC", "-o", self.own / f"{name}.so", source, *options)
+
+    def refusals(self, name):
+        """What `config --check`, the doctor and the log of the service say."""
+        env = {"LD_LIBRARY_PATH": str(scratch / "own")}
+        setting = ("--set", f"camera.backend={name}")
+        for command, code in (((tree / "bin/handcast", "config", "--check", rig_file()), 100),
+                              ((tree / "bin/handcast", "doctor", rig_file(), "--seconds", "0.5"), 1),
+                              ((tree / "bin/handcast-camera", "--config", rig_file()), 100)):
+            process = self.start(*command, *setting, **env)
+            said = process.stdout.read()
+            self.assertEqual(process.wait(PATIENCE_S), code, said)
+            yield " ".join(said.split())
+
+    def test_is_found_by_name(self):
+        self.assertRegex(run(tree / "bin/handcast-camera", "--backends"),
+                         rf"noise +From {re.escape(str(tree))}/lib/handcast/camera/noise.so")
+        self.assertIn("in order", handcast("config", "--check", rig_file(), "--set", "camera.backend=noise"))
+        said = run(tree / "bin/handcast", "config", "--check", rig_file(), "--set", "camera.backend=nois", codes=(100,),
+                   both=True)
+        self.assertIn("; lib/handcast has no file of this name", said)
+
+    def test_delivers_images_and_its_lines_reach_the_log(self):
+        rig = self.start_rig("camera.backend=noise")
+        handcast("swap", "camera", "twin")
+        handcast("swap", "camera", "noise")
+        rings = {row["stream"]: row for row in json.loads(handcast("top", "--once", "--json"))["rings"]}
+        self.assertGreater(rings["camera.frames"]["published"], 0)
+        handcast("down")
+        self.assertRegex(self.said + rig.stdout.read(), r"camera +info +noise at 60 Hz\n")
+
+    def test_may_be_a_tracker(self):
+        source, folder = scratch / "tracker.cpp", scratch / "own/handcast/pose"
+        source.write_text("""#include "services/pose/pose_source.hpp"
+namespace handcast::pose {
+static Result<std::unique_ptr<PoseSource>> open(const config::Rig& rig, const calib::Calibration&, const Surroundings&) {
+  return fail(Errc::bad_config, "no tracker of " + rig.name);
+}
+const service::LoadedBackEnd<PoseBackend> handcast_pose_back_end{.row = {.name = "tracker", .open = open}};
+}
+""")
+        folder.mkdir()
+        self.compile("tracker", source, *flags("--cflags"))
+        for said in self.refusals("tracker"):
+            self.assertIn("tracker.so is no back end of this service: it lacks handcast_camera_back_end", said)
+        (self.own / "tracker.so").rename(folder / "tracker.so")
+        said = run(tree / "bin/handcast", "config", "--check", rig_file(), "--set", "pose.backend=tracker", codes=(100,),
+                   both=True, LD_LIBRARY_PATH=str(scratch / "own"))
+        self.assertIn("no tracker of twin", said)
+
+    def test_that_cannot_be_loaded_is_refused_with_a_sentence(self):
+        (self.own / "text.so").write_text("no library\n")
+        nothing, absent = scratch / "nothing.cpp", scratch / "libabsent.so"
+        nothing.write_text("")
+        self.compile("nothing", nothing)
+        run("g++", "-shared", "-o", absent, nothing, "-Wl,-soname,libabsent.so.1")
+        self.compile("lacking", nothing, "-Wl,--no-as-needed", absent)
+        header = "services/runtime/backends.hpp"
+        older = scratch / "older" / header
+        older.parent.mkdir(parents=True)
+        text = (tree / "include/handcast" / header).read_text(encoding="utf-8")
+        older.write_text(text.replace('kAbi{"', 'kAbi{"0.'))
+        self.compile("older", self.source / "noise_camera.cpp", f"-I{scratch}/older", *flags("--cflags"))
+        for name, why in (("text", r"cannot be loaded: .*: (invalid ELF header|file too short)"),
+                          ("lacking", r"cannot be loaded: libabsent.so.1: cannot open shared object file"),
+                          ("nothing", r"is no back end of this service: it lacks handcast_camera_back_end"),
+                          ("older", r"was built for handcast 0\.[\d.]+-\d+-\d+, and this is [\d.]+-\d+-\d+; build it again")):
+            for said in self.refusals(name):
+                self.assertRegex(said, rf"camera: \S+/own/handcast/camera/{name}\.so {why}")
+
+
+class AProgramOfSomebodyElse(WithARig):
+    """One after the other, on one rig."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.by_cmake = scratch / "example/read_projections"
+        folder = cls.by_cmake.parent
+        # gcc splits a run path at its spaces.
+        run("cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, f"-DCMAKE_PREFIX_PATH={tree}", "-DCMAKE_SKIP_RPATH=ON")
+        run("cmake", "--build", folder)
+        cls.by_pkg_config = scratch / "read_projections"
+        run("g++", "-std=c++20", SOURCE / "read_projections.cpp", "-o", cls.by_pkg_config,
+            *flags("--cflags", "--libs"))
+        cls.ring_by_cmake = folder / "draw_ring"
+        cls.ring_by_pkg_config = scratch / "draw_ring"
+        run("gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", SOURCE / "draw_ring.c", "-o", cls.ring_by_pkg_config,
+            *flags("--cflags", "--libs", package="handcast-c"), "-lm")
+
+    def start_python(self, name, *arguments, **more):
+        """With the Python that has numpy, if there is one."""
+        return self.start(PYTHON, SOURCE / name, *arguments, **more, LD_LIBRARY_PATH=str(libraries()),
+                          PYTHONPATH=str(tree / "share/handcast/python"))
 
     def frames(self, reader, count):
         """The next `count` frames: number, time of the light, ages of the inputs; all in ms."""

@@ -3,17 +3,10 @@
 #include "tests/services/camera/camera_contract.hpp"
 
 namespace handcast::camera {
-
-Result<std::unique_ptr<Camera>> open_noise(const Opening& with);
-
 namespace {
 
-constexpr std::array kDocumented{
-#include "back_end_row.inc"
-};
-
-INSTANTIATE_TEST_SUITE_P(Documentation, CameraContract, testing::ValuesIn(kDocumented),
-                         name_of_row);
+INSTANTIATE_TEST_SUITE_P(Documentation, CameraContract,
+                         testing::Values(handcast_camera_back_end.row), name_of_row);
 
 }  // namespace
 }  // namespace handcast::camera

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <map>
 
@@ -76,6 +77,23 @@ TEST(CheckBackend, ListsThoseThatThereAre) {
   EXPECT_TRUE(check_backend(one_camera(), "camera", "aravis"));
   EXPECT_THAT(check_backend(one_camera(), "camera", "webcam").error().what,
               HasSubstr("camera has no back end 'webcam'; it has: twin, aravis"));
+}
+
+TEST(CheckBackend, LetsAFileOfThisNamePassForBothCameras) {
+  const test::Scratch scratch;
+  auto catalogue = one_camera();
+  catalogue["camera2"] = catalogue["camera"];
+  const auto folder = scratch.path() / "handcast/camera";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "noise.so") << "";
+  ::setenv("LD_LIBRARY_PATH", ("relative:" + scratch.path().string()).c_str(), 1);
+  for (const auto* service : {"camera", "camera2"}) {
+    EXPECT_TRUE(check_backend(catalogue, service, "noise")) << service;
+    EXPECT_FALSE(check_backend(catalogue, service, "../camera/noise")) << service;
+  }
+  EXPECT_TRUE(is_exclusive(catalogue, "camera", "noise"));
+  ::unsetenv("LD_LIBRARY_PATH");
+  EXPECT_FALSE(check_backend(catalogue, "camera2", "noise"));
 }
 
 TEST(CheckBackend, LetsAServiceWithoutADescriptionPass) {
