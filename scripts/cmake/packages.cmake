@@ -112,6 +112,9 @@ handcast_packaged(python lib/python3/dist-packages scripts/handcast.py)
 # All that is packed.
 add_custom_target(handcast_packages ALL
   DEPENDS ${made_files} ${made}/handcast@.service ${made}/handcast.bash handcast_c handcast_client handcast-film handcast_hands)
+if(TARGET handcast-aravis)
+  add_dependencies(handcast_packages handcast-aravis)
+endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME handcast)

@@ -8,6 +8,7 @@ namespace handcast::camera {
 
 #ifdef HANDCAST_WITH_ARAVIS
 Result<std::unique_ptr<Camera>> open_aravis(const Opening&);
+Result<void> check_aravis(const Opening&);
 #endif
 #ifdef HANDCAST_WITH_LIBUSB
 Result<std::unique_ptr<Camera>> open_leap(const Opening&);
@@ -24,7 +25,8 @@ static constexpr std::array kBackends{
                   .sentence = "A GigE Vision or USB3 Vision camera.",
                   .open = open_aravis,
                   .reads = {"camera.aravis", "camera.delivery_ms"},
-                  .exclusive = true},
+                  .exclusive = true,
+                  .check = check_aravis},
 #endif
     CameraBackend{.name = "twin",
                   .sentence = "Draws the twin's hand as an infrared camera would see it.",

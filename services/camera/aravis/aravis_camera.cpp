@@ -223,9 +223,7 @@ class AravisCamera final : public Camera {
   aravis::Keeper keeper_;
 };
 
-}  // namespace
-
-Result<std::unique_ptr<Camera>> open_aravis(const Opening& with) {
+Result<std::unique_ptr<Camera>> open_camera(const Opening& with) {
   const auto device = aravis::find_device(with.settings.aravis.device);
   if (!device) return tl::make_unexpected(device.error());
   const auto mailbox = std::make_shared<aravis::Mailbox>(1);
@@ -240,5 +238,11 @@ Result<std::unique_ptr<Camera>> open_aravis(const Opening& with) {
   return std::make_unique<AravisCamera>(*device, with.settings, with.camera, std::move(*session),
                                         mailbox);
 }
+
+}  // namespace
+
+// The table has the rest of its row.
+const service::LoadedBackEnd<CameraBackend> handcast_camera_back_end{
+    .row = {.name = "aravis", .open = open_camera}};
 
 }  // namespace handcast::camera
