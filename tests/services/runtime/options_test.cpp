@@ -5,6 +5,9 @@
 
 #include <array>
 
+#include "ipc/base/version.hpp"
+#include "services/runtime/backends.hpp"
+
 namespace handcast::service {
 namespace {
 
@@ -56,6 +59,10 @@ TEST(DaemonOptions, QuestionsNeedNoConfiguration) {
   EXPECT_THAT(*parse({"--describe"})->answer, HasSubstr("camera.process"));
   EXPECT_THAT(*parse({"--version"})->answer, StartsWith("handcast-camera "));
   EXPECT_THAT(*parse({"-h"})->answer, HasSubstr("Delivers images."));
+}
+
+TEST(BackEndFiles, AreThoseOfThisVersion) {
+  EXPECT_THAT(kAbi.version, StartsWith(std::string(version()) + "-"));
 }
 
 }  // namespace
