@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "ipc/base/inherited.hpp"
+#include "ipc/base/log.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -98,11 +99,11 @@ void Progress::say(double share, const std::string& advice) {
   printed_ns_ = now_ns();
   // \033[K clears the rest of the line (ECMA-48).
   fmt::print(stderr, "{}  {}: {:3} %  {}{}", is_terminal_ ? "\r" : "", title_, percent_of(share),
-             advice, is_terminal_ ? "\033[K" : "\n");
+             printable(advice), is_terminal_ ? "\033[K" : "\n");
 }
 
 void Progress::note(const std::string& sentence) {
-  fmt::print(stderr, "{}  - {}\n", is_terminal_ ? "\r\033[K" : "", sentence);
+  fmt::print(stderr, "{}  - {}\n", is_terminal_ ? "\r\033[K" : "", printable(sentence));
   printed_ns_ = 0;
 }
 

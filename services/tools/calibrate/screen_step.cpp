@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "calib/solve/screen/depth_error.hpp"
+#include "ipc/base/log.hpp"
 #include "ipc/base/number_text.hpp"
 #include "ipc/base/statistics.hpp"
 #include "services/tools/calibrate/by_hand.hpp"
@@ -125,7 +126,7 @@ Result<Outcome> measure_screen(Desk& desk) {
   fmt::print(stderr, "  measuring the delay of the light\n");
   const auto delay = patterns->measure_delay();
   if (!delay && delay.error().code == Errc::bad_data) {
-    fmt::print(stderr, "  {}\n", delay.error().what);
+    fmt::print(stderr, "  {}\n", printable(delay.error().what));
     return align_by_hand(desk);
   }
   if (!delay) return tl::make_unexpected(delay.error());

@@ -226,7 +226,7 @@ handcast::Result<Report> run(const Options& options) {
   for (std::size_t i = 0; i < options.images.size(); ++i) {
     if (shows_progress)
       fmt::print(stderr, "\r{}/{} {}\033[K", i + 1, options.images.size(),
-                 options.images[i].filename().string());
+                 printable(options.images[i].filename().string()));
     auto result = detect_in(finder, options, i, (*drawings)[i]);
     if (!result) {
       // What was found so far is not lost.
