@@ -118,10 +118,11 @@ std::string remedy_of(const Pauses& pauses) {
         fmt::format("move the interrupts {} to another core: `echo CORE | sudo tee "
                     "/proc/irq/{}/smp_affinity_list`",
                     join(devices, ", "), devices.front()));
+  const auto core = pauses.core == 0 ? "N" : fmt::format("{}", pauses.core);
   steps.push_back(
       fmt::format("keep other work away: projector.process.cores = [{0}] and "
-                  "isolcpus={0} nohz_full={0} on the kernel's command line",
-                  pauses.core));
+                  "isolcpus={0} nohz_full={0} on the kernel's command line{1}",
+                  core, pauses.core == 0 ? "; not core 0: Linux keeps it" : ""));
   return join(steps, "; ");
 }
 

@@ -60,6 +60,14 @@ TEST(Pauses, LongOnesNameTheInterruptsThereAndWhatToDo) {
                                     HasSubstr("isolcpus=2"), Not(HasSubstr("priority"))));
 }
 
+TEST(Pauses, CoreZeroCannotBeKeptFree) {
+  auto pauses = quiet();
+  pauses.longest_us = 300;
+  pauses.core = 0;
+  EXPECT_THAT(judge_pauses(pauses).remedy,
+              AllOf(HasSubstr("nohz_full=N"), HasSubstr("not core 0"), Not(HasSubstr("=0"))));
+}
+
 TEST(Pauses, WithoutARealTimePriorityThatIsTheFirstStep) {
   auto pauses = quiet();
   pauses.longest_us = 4000;
