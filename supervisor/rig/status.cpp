@@ -62,9 +62,7 @@ ServiceFigures figures_of(const Service& service, const RigView& rig) {
   if (is_on_fallback(service, rig)) figures.instead_of = service.spec().backend;
   if (exit) figures.last_exit = exit->describe();
   figures.reason = reason_of(service);
-  // The output of these is of interest.
-  if (!is_well(service) || service.spec().instance_of == "guest" || service.spec().name == "bridge")
-    figures.log = service.log().last(kLastWords);
+  if (!is_well(service) || service.spec().shows_log) figures.log = service.log().last(kLastWords);
   figures.pid = service.pid();
   figures.standby_pid = service.standby_pid();
   figures.restarts = service.restarts();

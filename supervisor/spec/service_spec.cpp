@@ -105,11 +105,11 @@ void add_guests(const config::Rig& rig, std::vector<ServiceSpec>& services) {
   constexpr double kSlack_s = 5;  // a guest ends itself before
   for (const auto& guest : config::kGuests)
     if (guest.is_wanted(rig))
-      services.push_back(
-          {.name = std::string(guest.service),
-           .needs = {std::string(guest.feeds)},
-           .instance_of = "guest",
-           .ready_s = config::first_message_within_s(guest.settings(rig)) + kSlack_s});
+      services.push_back({.name = std::string(guest.service),
+                          .needs = {std::string(guest.feeds)},
+                          .instance_of = "guest",
+                          .ready_s = config::first_message_within_s(guest.settings(rig)) + kSlack_s,
+                          .shows_log = true});
 }
 
 /// Whether the desk has anything to serve.
@@ -156,7 +156,7 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
   if (rig.observer.enabled)
     services.push_back({"observer", "", "", rig.observer.rate_hz, "", {"projector"}});
   if (rig.watch.enabled) services.push_back({"watch", "", "", 0});
-  if (rig.bridge.is_wanted()) services.push_back({"bridge", "", "", 0});
+  if (rig.bridge.is_wanted()) services.push_back({.name = "bridge", .shows_log = true});
   if (rig.supervisor.metrics_port > 0) services.push_back({"exporter", "", "", 0});
   add_guests(rig, services);
   for (auto& service : services) {

@@ -32,7 +32,8 @@ struct ServiceSpec {
   bool has_safe_state = false;
   /// The service whose program it is an instance of: "camera" for camera2; "" for its own program.
   std::string instance_of{};
-  double ready_s = 0;  ///< how long its start may take; 0: supervisor.ready_s
+  double ready_s = 0;      ///< how long its start may take; 0: supervisor.ready_s
+  bool shows_log = false;  ///< its last lines are of interest even if it is well
 };
 
 /// The begin of the command line of a service: its program in this folder, which --as tells what it
