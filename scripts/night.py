@@ -19,12 +19,14 @@ from running_rig import HANDCAST, Rig, options_parser
 from storm import Folder
 
 DARK_S = 0.25
+WANTED_HZ = 60
+LEAST_HZ = 0.8 * WANTED_HZ  # before the first fault: a computer that is busier than this shows nothing of the rig
 CALM = 0.1  # of the time, at both ends
 MOST_GROWTH = 0.01
 LIBRARIES = HANDCAST.parent.parent / "lib"
 # Whose dark seconds are their own: no light without a projector, or without its display.
 DARK_BY_NATURE = ("kill projector", "stop projector", "display off", "display server dies")
-SETTINGS = ["camera.rate_hz=60", "projector.rate_hz=60", "projector.process.standby=true", "pose.process.standby=true", "watch.enabled=true"]
+SETTINGS = [f"camera.rate_hz={WANTED_HZ}", f"projector.rate_hz={WANTED_HZ}", "projector.process.standby=true", "pose.process.standby=true", "watch.enabled=true"]
 DISPLAY = """
 Section "Device"
   Identifier "card"
@@ -239,14 +241,23 @@ def dark_times(eye, end_s):
     return times + [(last_s, end_s)] if last_s and end_s - last_s > DARK_S else times
 
 
+def calm_hz(eye, until_s):
+    """The rate of the light before the first fault of the night."""
+    times = [float(line.split()[0]) for line in eye.read_text().splitlines()]
+    calm = [at_s for at_s in times if at_s < until_s]
+    return len(calm) / (until_s - calm[0]) if calm else 0
+
+
 def owner_of(dark, faults):
     """The last fault that had begun when the light went, or soon after its last frame: hands fade first."""
     begun = [fault for fault in faults if fault["from_s"] < dark[0] + DARK_S]
     return begun[-1]["fault"] if begun else "nothing"
 
 
-def report(night, seconds, dark, early, late, code):
+def report(night, seconds, dark, hz, early, late, code):
     """Prints the tables. Returns whether all is well."""
+    if hz < LEAST_HZ:
+        night.failures.append(f"the computer is too busy to judge: {hz:.0f} Hz of light before the first fault, not {WANTED_HZ}")
     counts, lost, worst = collections.Counter(fault["fault"] for fault in night.faults), collections.Counter(), collections.Counter()
     for time_s in dark:
         owner = owner_of(time_s, night.faults)
@@ -277,7 +288,7 @@ def main():
         night = Night(options, stack)
         start_s, seconds = time.monotonic(), 60 * options.minutes
         time.sleep(CALM * seconds)
-        early = night.memory_kib()
+        early, calm_until_s = night.memory_kib(), time.monotonic()
         while time.monotonic() < start_s + (1 - CALM) * seconds and night.rig.process.poll() is None:
             night.strike()
             time.sleep(night.chance.uniform(0.5, 2.5))
@@ -289,7 +300,8 @@ def main():
         writer = csv.DictWriter(file, ["fault", "from_s", "to_s"])
         writer.writeheader()
         writer.writerows(night.faults)
-    sys.exit(0 if report(night, seconds, dark_times(options.out / "eye.txt", end_s), early, late, code) else 1)
+    eye = options.out / "eye.txt"
+    sys.exit(0 if report(night, seconds, dark_times(eye, end_s), calm_hz(eye, calm_until_s), early, late, code) else 1)
 
 
 if __name__ == "__main__":
