@@ -68,7 +68,7 @@ inline glm::dvec3 vector_at(const HandErrors& errors, std::size_t first) {
 /// Standard deviations of where a joint is, in its axes: of the tracker's error, which a person's
 /// joints cause, and of where a detector sees it. Detectors define wrist and root of the thumb each
 /// in their own way.
-inline constexpr double kOwnPlace_m = 0.002, kSeenPlace_m = 0.0025, kSeenRoot_m = 0.008;
+inline constexpr double kOwnPlace_m = 0.002, kSeenPlace_m = 0.0021, kSeenRoot_m = 0.008;
 /// Of a detector's sigma, this share is where it sees the joints of one person.
 inline constexpr double kSeenShare = 0.5;
 /// `sigma_m`: the detector's usual sigma, on the hand.
