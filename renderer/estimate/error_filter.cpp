@@ -12,7 +12,6 @@ namespace {
 constexpr auto kErrors = static_cast<Eigen::Index>(error::kCount);
 constexpr Eigen::Index kNumbers = 2 * kLandmarks;  ///< of a detection
 constexpr double kNotSeen_px = 1e4;
-constexpr std::size_t kWristJoint = 1;
 
 constexpr double square(double x) { return x * x; }
 constexpr Eigen::Index index(std::size_t error) { return static_cast<Eigen::Index>(error); }
@@ -118,7 +117,7 @@ void ErrorFilter::learn_sigma(const calib::CameraModel& camera, const HandJoints
   constexpr double kNews = 1e-3;  // of an image
   double sum_px = 0;
   for (const double sigma_px : sigma_px_) sum_px += sigma_px;
-  const double sigma_m = sum_px / kLandmarks * reported.at_m[kWristJoint].z / camera.fx_px;
+  const double sigma_m = sum_px / kLandmarks * reported.at_m[joint_of_landmark(0)].z / camera.fx_px;
   if (usual_sigma_m_ > 0) {
     usual_sigma_m_ += kNews * (sigma_m - usual_sigma_m_);
     return;

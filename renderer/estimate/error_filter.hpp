@@ -43,6 +43,8 @@ class ErrorFilter {
   void set_variance(const ErrorPrior& prior);
   void add_bends(int finger, double share);
   void set_noise(const msg::HandLandmarks& seen);
+  void learn_sigma(const calib::CameraModel& camera, const HandJoints& reported);
+  HandErrors of_tracker(HandErrors errors) const;
   void linearise(const calib::CameraModel& camera, const HandJoints& reported,
                  const msg::HandLandmarks& seen);
   void add_slopes(int landmark, const glm::dmat3x2& px_per_m, const ArticulatedHand& hand);
@@ -56,9 +58,6 @@ class ErrorFilter {
   void end_error(const ErrorPrior& prior);
   void doubt_landmarks(const AbruptLandmarks& abrupt);
   void reduce_covariance();
-
-  void learn_sigma(const calib::CameraModel& camera, const HandJoints& reported);
-  HandErrors of_tracker(HandErrors errors) const;
 
   HandErrors errors_{};
   Matrix covariance_;

@@ -44,7 +44,7 @@ class HandEstimate {
   /// The tracker's hand at a time without its errors. What is known only for a moment fades after
   /// the newest landmarks.
   msg::HandPose corrected(std::int64_t time_ns, const msg::HandPose& reported) const;
-  /// The errors at a time.
+  /// The tracker's errors at a time.
   HandErrors errors_at(std::int64_t time_ns) const;
 
  private:

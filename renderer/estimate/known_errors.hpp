@@ -29,7 +29,7 @@ class KnownErrors {
   /// sightings, where it puts the hand is forgotten.
   void doubt_place() { is_doubtful_ = true; }
 
-  /// The errors that are expected at a time.
+  /// The tracker's errors that are expected at a time.
   HandErrors errors_at(std::int64_t time_ns) const;
 
  private:
