@@ -15,7 +15,7 @@ import tempfile
 import time
 
 import running_rig
-from running_rig import HANDCAST, Rig, options_parser
+from running_rig import HANDCAST, ROOT, Rig, options_parser
 from storm import Folder
 
 DARK_S = 0.25
@@ -27,40 +27,14 @@ LIBRARIES = HANDCAST.parent.parent / "lib"
 # Whose dark seconds are their own: no light without a projector, or without its display.
 DARK_BY_NATURE = ("kill projector", "stop projector", "display off", "display server dies")
 SETTINGS = [f"camera.rate_hz={WANTED_HZ}", f"projector.rate_hz={WANTED_HZ}", "projector.process.standby=true", "pose.process.standby=true", "watch.enabled=true"]
-DISPLAY = """
-Section "Device"
-  Identifier "card"
-  Driver "dummy"
-  VideoRam 64000
-EndSection
-Section "Monitor"
-  Identifier "any"
-  HorizSync 5-1000
-  VertRefresh 5-500
-EndSection
-Section "Screen"
-  Identifier "screen"
-  Device "card"
-  Monitor "any"
-  DefaultDepth 24
-  SubSection "Display"
-    Depth 24
-    Virtual 2048 2048
-    Modes "1024x768"
-  EndSubSection
-EndSection
-Section "ServerFlags"
-  Option "AutoAddDevices" "false"
-EndSection
-"""
+DISPLAY = ROOT / "tests/dummy_display.conf"
 
 
 class Display:
     """An X server with a monitor in memory, DUMMY1, beside a primary one."""
 
     def __init__(self, out):
-        self.name, self.settings, self.log = f":{1000 + os.getpid() % 50_000}", out / "xorg.conf", out / "xorg.log"
-        self.settings.write_text(DISPLAY)
+        self.name, self.log = f":{1000 + os.getpid() % 50_000}", out / "xorg.log"
         self.server = None
         os.environ["DISPLAY"] = self.name
         self.works = pathlib.Path("/usr/lib/xorg/Xorg").exists() and shutil.which("xrandr") is not None and self.start()
@@ -69,7 +43,7 @@ class Display:
         return subprocess.run(["xrandr", *words], capture_output=True).returncode == 0
 
     def start(self):
-        words = ["-config", self.settings, "-logfile", self.log, "-noreset", "-novtswitch", "-sharevts", "-nolisten", "tcp"]
+        words = ["-config", DISPLAY, "-logfile", self.log, "-noreset", "-novtswitch", "-sharevts", "-nolisten", "tcp"]
         with open(self.log.with_suffix(".out"), "w") as log:
             self.server = subprocess.Popen(["/usr/lib/xorg/Xorg", *words, self.name], stdout=log, stderr=log)
         limit_s = time.monotonic() + 20

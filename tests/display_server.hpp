@@ -9,9 +9,8 @@
 
 #include <array>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tests/scratch.hpp"
@@ -60,7 +59,6 @@ class DisplayServer {
 
   /// Starts the server again under its name after end().
   bool start() {
-    std::ofstream(scratch_.path() / "xorg.conf") << kSettings;
     std::array<int, 2> number{};
     if (pipe(number.data()) != 0) return false;
     pid_ = fork();
@@ -86,37 +84,12 @@ class DisplayServer {
 
  private:
   static constexpr int kPatience_ms = 20'000;
-  static constexpr std::string_view kSettings = R"(
-Section "Device"
-  Identifier "card"
-  Driver "dummy"
-  VideoRam 64000
-EndSection
-Section "Monitor"
-  Identifier "any"
-  HorizSync 5-1000
-  VertRefresh 5-500
-EndSection
-Section "Screen"
-  Identifier "screen"
-  Device "card"
-  Monitor "any"
-  DefaultDepth 24
-  SubSection "Display"
-    Depth 24
-    Virtual 2048 2048
-    Modes "1024x768"
-  EndSubSection
-EndSection
-Section "ServerFlags"
-  Option "AutoAddDevices" "false"
-EndSection
-)";
 
   /// Becomes the server, which writes the number of its display to `number`.
   [[noreturn]] void run(int number) const {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const std::string log = scratch_.path() / "log", file = scratch_.path() / "xorg.conf",
+    const std::string log = scratch_.path() / "log",
+                      file = std::filesystem::absolute("tests/dummy_display.conf"),
                       out = scratch_.path() / "out", descriptor = fmt::format("{}", number);
     if (std::freopen(out.c_str(), "w", stderr) == nullptr) _exit(1);
     std::vector<const char*> words{"Xorg",        "-displayfd", descriptor.c_str(), "-config",
