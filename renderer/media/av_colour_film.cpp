@@ -170,7 +170,6 @@ class AvColourFilm final : public rr::ColourFilm {
       if (opening_.rate_hz > 0) options.set("framerate", fmt::format("{}", opening_.rate_hz));
     } else if (opening_.kind == Kind::stream) {
       options.set("rtsp_transport", "tcp");  // without loss
-      options.set("fflags", "nobuffer");
       options.set("analyzeduration", "1000000");
     }
     AVFormatContext* opened = avformat_alloc_context();

@@ -99,11 +99,13 @@ class StreamSource final : public SettableSource {
                     Texture& out) override {
     if (take_change()) start();
     const std::lock_guard lock(state_->mutex);
+    if (std::exchange(state_->is_new, false)) {
+      std::swap(out, state_->newest);
+      return true;
+    }
     if (auto trouble = std::exchange(state_->trouble, std::nullopt))
       return tl::make_unexpected(std::move(*trouble));
-    if (!std::exchange(state_->is_new, false)) return false;
-    std::swap(out, state_->newest);
-    return true;
+    return false;
   }
 
  private:

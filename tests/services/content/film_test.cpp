@@ -198,10 +198,13 @@ TEST_F(FilmTest, AFilmOfATelephoneIsTurnedAndPlays) {
   EXPECT_EQ(draw(**source, 0), true);
 }
 
-/// A server that gives each client the beginning of a film and then falls silent.
-class StallingServer {
+/// What a server does after its bytes.
+enum class Then { falls_silent, hangs_up };
+
+/// A server that gives each client these bytes.
+class ByteServer {
  public:
-  explicit StallingServer(std::string bytes)
+  ByteServer(std::string bytes, Then then)
       : bytes_(std::move(bytes)), listening_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -211,15 +214,16 @@ class StallingServer {
     socklen_t size = sizeof address;
     (void)::getsockname(listening_, reinterpret_cast<sockaddr*>(&address), &size);
     address_ = "tcp://127.0.0.1:" + std::to_string(ntohs(address.sin_port));
-    thread_ = std::thread([this] {
+    thread_ = std::thread([this, then] {
       for (int client; (client = ::accept(listening_, nullptr, nullptr)) >= 0;) {
         clients_.push_back(client);
         ++accepted_;
         (void)::send(client, bytes_.data(), bytes_.size(), MSG_NOSIGNAL);
+        if (then == Then::hangs_up) ::shutdown(client, SHUT_WR);
       }
     });
   }
-  ~StallingServer() {
+  ~ByteServer() {
     ::shutdown(listening_, SHUT_RDWR);
     thread_.join();
     for (const int client : clients_) ::close(client);
@@ -242,7 +246,7 @@ TEST_F(FilmTest, AStreamThatStallsKeepsItsLastPictureAndConnectsAgain) {
   std::ifstream film(file("a.avi"), std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(film), {});
   bytes.resize(bytes.size() / 2);
-  StallingServer server(std::move(bytes));
+  ByteServer server(std::move(bytes), Then::falls_silent);
   auto source = open(server.address());
   ASSERT_TRUE(source) << source.error().what;
   int pictures = 0, troubles = 0;
@@ -260,6 +264,18 @@ TEST_F(FilmTest, AStreamThatStallsKeepsItsLastPictureAndConnectsAgain) {
   EXPECT_GT(pictures, 1);
   EXPECT_EQ(troubles, 1);
   EXPECT_GE(server.accepted(), 2);
+}
+
+TEST_F(FilmTest, AStreamOfOnePictureThatEndsIsShown) {
+  Texture picture(kWidth, kHeight, 0xff008050);
+  const auto jpeg = renderer::jpeg_of(picture.view());
+  ByteServer server(std::string(jpeg.begin(), jpeg.end()), Then::hangs_up);
+  auto source = open(server.address());
+  ASSERT_TRUE(source) << source.error().what;
+  const auto drew = draw_until_an_error(**source);
+  ASSERT_FALSE(drew);
+  EXPECT_THAT(drew.error().what, HasSubstr("has ended"));
+  EXPECT_EQ(shown(), 3);
 }
 
 TEST_F(FilmTest, AStreamThatIsNotThereIsASentenceAndDoesNotWait) {
