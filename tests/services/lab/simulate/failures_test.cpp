@@ -123,7 +123,11 @@ struct Damage {
   bool finite = true;
   double clean_px = 0;  ///< mean error of the run without the fault
   double worst_px = 0;  ///< largest mean error of a hand
-  double step_px = 0;   ///< largest change of that error between successive projector frames
+  /// Largest changes of that error between successive projector frames: the light leaves the hand,
+  /// or is back on it at once.
+  /// @{
+  double away_px = 0, back_px = 0;
+  /// @}
   /// Time from the end of the fault until the error stays within 2 px of the clean run's.
   double recovery_ms = 0;
   int frames_without_hand = 0;  ///< frames that lack a hand of the clean run
@@ -145,8 +149,10 @@ Damage damage_of(const Run& clean, const Run& faulty, double fault_end_s) {
     damage.clean_px += good.worst_px;
     ++count;
     damage.worst_px = std::max(damage.worst_px, bad.worst_px);
-    if (bad.hands == good.hands)
-      damage.step_px = std::max(damage.step_px, std::abs(bad.worst_px - before_px));
+    if (bad.hands == good.hands) {
+      damage.away_px = std::max(damage.away_px, bad.worst_px - before_px);
+      damage.back_px = std::max(damage.back_px, before_px - bad.worst_px);
+    }
     before_px = bad.worst_px;
     damage.frames_without_hand += bad.hands < good.hands;
     if (bad.hands < good.hands || bad.worst_px > good.worst_px + kGood_px)
@@ -162,7 +168,7 @@ struct Case {
   std::string name, motion;
   Settings settings;
   double lasting_s;
-  double worst_px, step_px, recovery_ms;
+  double worst_px, away_px, back_px, recovery_ms;
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& fault) {
@@ -176,14 +182,14 @@ TEST_P(Failure, IsBoundedAndOver) {
   const auto damage = damage_of(clean_run(fault.motion), run_through(fault.motion, fault.settings),
                                 kFaultFrom_s + fault.lasting_s);
   fmt::print(
-      "[ failure  ] {:26} {:10} clean {:5.2f} px, worst {:6.2f} px, step {:5.2f} px, good again "
-      "after {:6.1f} ms, {} frames without a "
-      "hand\n",
-      fault.name, fault.motion, damage.clean_px, damage.worst_px, damage.step_px,
+      "[ failure  ] {:26} {:10} clean {:5.2f} px, worst {:6.2f} px, steps {:5.2f} px away and "
+      "{:5.2f} back, good again after {:6.1f} ms, {} frames without a hand\n",
+      fault.name, fault.motion, damage.clean_px, damage.worst_px, damage.away_px, damage.back_px,
       damage.recovery_ms, damage.frames_without_hand);
   EXPECT_TRUE(damage.finite);
   EXPECT_LE(damage.worst_px, fault.worst_px);
-  EXPECT_LE(damage.step_px, fault.step_px);
+  EXPECT_LE(damage.away_px, fault.away_px);
+  EXPECT_LE(damage.back_px, fault.back_px);
   EXPECT_LE(damage.recovery_ms, fault.recovery_ms);
 }
 
@@ -193,7 +199,8 @@ Settings lasting(const std::string& path, const std::string& lasting_s) {
 
 /// While the tracker is silent or has just jumped, only landmarks are used, which causes the worst
 /// errors of a shaken hand. Recovery takes two detections after a fault of the detector (its age
-/// and its interval), and three samples plus their age after a fault of the tracker.
+/// and its interval), and three samples plus their age after a fault of the tracker. The light of a
+/// shaken hand, 26 px off, is then back at once: cascade.filter.blend_px holds back 8 px of a jump.
 std::vector<Case> cases() {
   const auto detector_lost = lasting("twin.detector.lost", "0.3"),
              detector_wrong = lasting("twin.detector.wrong_finger", "0.2");
@@ -202,24 +209,24 @@ std::vector<Case> cases() {
   const auto lost = lasting("twin.tracker.lost", "0.2"),
              swapped = lasting("twin.tracker.swapped", "0.2");
   return {
-      {"detector_lost", "wave", detector_lost, 0.3, 8, 2, 33},
-      {"detector_lost", "two_hands", detector_lost, 0.3, 8, 2, 33},
-      {"detector_lost", "shake", detector_lost, 0.3, 11, 2, 33},
-      {"detector_wrong_finger", "wave", detector_wrong, 0.2, 3, 1, 5},
-      {"detector_wrong_finger", "two_hands", detector_wrong, 0.2, 3, 1, 5},
-      {"detector_wrong_finger", "shake", detector_wrong, 0.2, 11, 2, 5},
-      {"tracker_wrong_finger", "wave", wrong, 0.2, 8, 1.5, 60},
-      {"tracker_wrong_finger", "two_hands", wrong, 0.2, 8, 1.5, 60},
-      {"tracker_wrong_finger", "shake", wrong, 0.2, 30, 14, 75},
-      {"tracker_frozen", "wave", frozen, 0.2, 8, 1.5, 60},
-      {"tracker_frozen", "two_hands", frozen, 0.2, 8, 1.5, 60},
-      {"tracker_frozen", "shake", frozen, 0.2, 35, 14, 75},
-      {"tracker_lost", "wave", lost, 0.2, 8, 1.5, 60},
-      {"tracker_lost", "two_hands", lost, 0.2, 8, 1.5, 60},
-      {"tracker_lost", "shake", lost, 0.2, 35, 14, 75},
-      {"tracker_swapped", "wave", swapped, 0.2, 3, 1, 5},
-      {"tracker_swapped", "two_hands", swapped, 0.2, 3, 1, 5},
-      {"tracker_swapped", "shake", swapped, 0.2, 11, 2, 5},
+      {"detector_lost", "wave", detector_lost, 0.3, 8, 2, 2, 33},
+      {"detector_lost", "two_hands", detector_lost, 0.3, 8, 2, 2, 33},
+      {"detector_lost", "shake", detector_lost, 0.3, 11, 2, 2, 33},
+      {"detector_wrong_finger", "wave", detector_wrong, 0.2, 3, 1, 1, 5},
+      {"detector_wrong_finger", "two_hands", detector_wrong, 0.2, 3, 1, 1, 5},
+      {"detector_wrong_finger", "shake", detector_wrong, 0.2, 11, 2, 2, 5},
+      {"tracker_wrong_finger", "wave", wrong, 0.2, 8, 1.5, 1.5, 60},
+      {"tracker_wrong_finger", "two_hands", wrong, 0.2, 8, 1.5, 1.5, 60},
+      {"tracker_wrong_finger", "shake", wrong, 0.2, 30, 3, 18, 75},
+      {"tracker_frozen", "wave", frozen, 0.2, 8, 1.5, 1.5, 60},
+      {"tracker_frozen", "two_hands", frozen, 0.2, 8, 1.5, 1.5, 60},
+      {"tracker_frozen", "shake", frozen, 0.2, 35, 3, 18, 75},
+      {"tracker_lost", "wave", lost, 0.2, 8, 1.5, 1.5, 60},
+      {"tracker_lost", "two_hands", lost, 0.2, 8, 1.5, 1.5, 60},
+      {"tracker_lost", "shake", lost, 0.2, 35, 3, 18, 75},
+      {"tracker_swapped", "wave", swapped, 0.2, 3, 1, 1, 5},
+      {"tracker_swapped", "two_hands", swapped, 0.2, 3, 1, 1, 5},
+      {"tracker_swapped", "shake", swapped, 0.2, 11, 2, 2, 5},
   };
 }
 
