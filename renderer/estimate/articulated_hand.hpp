@@ -36,6 +36,8 @@ class ArticulatedHand {
 
   /// The joints without errors.
   const HandJoints& joints() const { return joints_; }
+  /// By how much its fingers are bent, as reported.
+  const Flexions& flexions() const { return flexions_; }
   /// The place of a joint without the errors of fingers and single joints, m.
   glm::dvec3 rigid_m(std::size_t joint) const {
     return shifted_m_ + whole_ * (reported_.at_m[joint] - wrist_m_);
@@ -54,7 +56,7 @@ class ArticulatedHand {
   void place(const HandErrors& errors);
 
   HandJoints reported_, joints_;
-  Flexions flexions_;  ///< as reported
+  Flexions flexions_;
   /// Before the hand is turned: the joints, and the axes about which each finger bends and, last,
   /// spreads.
   /// @{

@@ -19,6 +19,13 @@ constexpr Eigen::Index index(std::size_t error) { return static_cast<Eigen::Inde
 /// Errors as a vector of Eigen.
 auto as_vector(HandErrors& errors) { return Eigen::Map<Eigen::VectorXd>(errors.data(), kErrors); }
 
+/// How much of the displacement of its row a landmark has. None on a folded finger: there, bends
+/// displace joints in the same way.
+double share_of_row(const ArticulatedHand& hand, int landmark) {
+  const int finger = finger_of_landmark(landmark);
+  return finger > 0 ? 1 - folded(hand.flexions()[finger]) : 0;
+}
+
 }  // namespace
 
 ErrorFilter::ErrorFilter()
@@ -144,7 +151,11 @@ void ErrorFilter::linearise(const calib::CameraModel& camera, const HandJoints& 
   for (int landmark = 0; landmark < kLandmarks; ++landmark) {
     const auto joint = joint_of_landmark(landmark);
     const auto place = error::place_of(landmark);
-    const glm::dvec3 beside = vector_at(errors_, place) - vector_at(own, place);
+    glm::dvec3 beside = vector_at(errors_, place) - vector_at(own, place);
+    if (const double share = share_of_row(hand, landmark); share > 0) {
+      const auto row = error::row_of(landmark);
+      beside += share * glm::dvec3(0, errors_[row], errors_[row + 1]);
+    }
     const glm::dvec3 at_m = hand.joints().at_m[joint] + hand.joints().axes[joint] * beside;
     add_slopes(landmark, camera.jacobian_px_per_m(hand.rigid_m(joint)), hand);
     const auto error = error::seen_of(landmark);
@@ -176,6 +187,11 @@ void ErrorFilter::add_slopes(int landmark, const glm::dmat3x2& px_per_m,
     add(error, px_per_m * way);
   };
   hand.derivatives(landmark, add_vector, add_number);
+  if (const double share = share_of_row(hand, landmark); share > 0) {
+    const glm::dmat3 axes = share * hand.joints().axes[joint_of_landmark(landmark)];
+    add_number(error::row_of(landmark), axes[1]);
+    add_number(error::row_of(landmark) + 1, axes[2]);
+  }
   add(error::seen_of(landmark), {1, 0});
   add(error::seen_of(landmark) + 1, {0, 1});
 }

@@ -38,7 +38,8 @@ struct ErrorPrior {
 inline constexpr double kLasting_s = 60, kPosture_s = 0.7, kDrift_s = 0.3, kSeen_s = 0.35,
                         kGross_s = 2;
 
-/// Where the tracker's calibration and its idea of the hand's size put the hand, and the fingers.
+/// Where the tracker's calibration and its idea of the hand's size put the hand, and the fingers;
+/// where the detector sees rows of joints.
 inline constexpr std::array kErrorPriors{
     ErrorPrior{error::kShift, 2, 10e-3, kLasting_s},
     ErrorPrior{error::kShift + 2, 1, 2.5e-3, kLasting_s},
@@ -46,6 +47,7 @@ inline constexpr std::array kErrorPriors{
     ErrorPrior{error::kSize, 1, 0.03, kLasting_s},
     ErrorPrior{error::kMissing, kFingers, 0.1, kLasting_s},
     ErrorPrior{error::kSpread, kFingers, 2 * kDegree, kPosture_s},
+    ErrorPrior{error::kRow, 2 * error::kRows, kSeenRow_m, kPosture_s},
 };
 /// How far a tracker that has jumped may put the hand beside its place.
 inline constexpr double kJump_m = 0.05;

@@ -33,8 +33,13 @@ inline constexpr std::size_t kDrift = kSpread + kFingers;
 /// By landmark, in the axes of its joint, m: displaced, as the detector sees it. A part of it is
 /// the tracker's error, own_share().
 inline constexpr std::size_t kPlace = kDrift + 2 * kLandmarks;
+/// By row of landmarks across the four fingers, from the knuckles to the tips, in the axes of their
+/// joints, m: where the detector sees them, above the finger and along it. What the flesh of
+/// another person does to a detector in a posture, it does to all fingers.
+inline constexpr std::size_t kRow = kPlace + 3 * kLandmarks;
+inline constexpr int kRows = kLandmarksOfFinger;
 /// By landmark: the detector's error of the moment, px.
-inline constexpr std::size_t kSeen = kPlace + 3 * kLandmarks;
+inline constexpr std::size_t kSeen = kRow + 2 * static_cast<std::size_t>(kRows);
 inline constexpr std::size_t kCount = kSeen + 2 * kLandmarks;
 
 /// The first number of a finger or a landmark.
@@ -49,6 +54,10 @@ constexpr std::size_t drift_of(int landmark) {
 }
 constexpr std::size_t place_of(int landmark) {
   return kPlace + 3 * static_cast<std::size_t>(landmark);
+}
+/// Of a landmark of the four fingers.
+constexpr std::size_t row_of(int landmark) {
+  return kRow + 2 * static_cast<std::size_t>((landmark - 1) % kLandmarksOfFinger);
 }
 constexpr std::size_t seen_of(int landmark) {
   return kSeen + 2 * static_cast<std::size_t>(landmark);
@@ -69,6 +78,8 @@ inline glm::dvec3 vector_at(const HandErrors& errors, std::size_t first) {
 /// joints cause, and of where a detector sees it. Detectors define wrist and root of the thumb each
 /// in their own way.
 inline constexpr double kOwnPlace_m = 0.002, kSeenPlace_m = 0.0021, kSeenRoot_m = 0.008;
+/// And of what it shares with the joints of the other fingers.
+inline constexpr double kSeenRow_m = 0.003;
 /// Of a detector's sigma, this share is where it sees the joints of one person.
 inline constexpr double kSeenShare = 0.5;
 /// `sigma_m`: the detector's usual sigma, on the hand.

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "renderer/base/joint_math.hpp"
+#include "renderer/estimate/articulated_hand.hpp"
 #include "renderer/predict/projected_pose.hpp"
 #include "tests/renderer/hand_pose.hpp"
 #include "tests/renderer/poses.hpp"
@@ -211,6 +212,27 @@ TEST_F(Estimate, AJointThatAnUnsureDetectorSeesElsewhereStays) {
   };
   const float sure_mm = moved_mm(2), unsure_mm = moved_mm(12);
   EXPECT_LT(unsure_mm, 0.75f * sure_mm);
+}
+
+/// Another person's flesh does to a detector the same at all fingers.
+TEST_F(Estimate, ARowOfJointsThatTheDetectorSeesElsewhereStays) {
+  constexpr float kTowardsTip = 0.2f;  // of a bone
+  float elsewhere_mm = 0, moved_mm = 0;
+  for (int i = 0; i < 500; ++i, time_ns_ += kStep_ns) {
+    const auto pose = truth(time_ns_);
+    auto as_seen = pose;
+    for (const int middle : {6, 10, 14, 18}) {
+      const auto place = glm::mix(at(pose, middle), at(pose, middle + 1), kTowardsTip);
+      for (int axis = 0; axis < 3; ++axis)
+        as_seen.joints[joint_of_landmark(middle)].position_m[axis] = place[axis];
+    }
+    report(pose);
+    estimate_.detection(time_ns_, seen(as_seen));
+    estimate_.look_back(track_);
+    elsewhere_mm += apart_mm(as_seen, pose);
+    moved_mm += apart_mm(corrected(pose), pose);
+  }
+  EXPECT_LT(moved_mm, 0.7f * elsewhere_mm);
 }
 
 TEST_F(Estimate, AFingerThatTheTrackerTakesForAnotherIsWhereTheLandmarksAre) {
