@@ -12,6 +12,10 @@ import time
 PATIENCE_S = 20
 
 
+class PageLeft(AssertionError):
+    """The page that was asked was left meanwhile."""
+
+
 class Browser:
     """Chromium, driven by its DevTools protocol through two pipes.
 
@@ -54,7 +58,9 @@ class Browser:
         while True:
             answer = self.receive()
             if answer.get("id") == self.count:
-                assert "error" not in answer, f"{method}: {answer.get('error')}"
+                if "error" in answer:
+                    was_left = "navigated" in answer["error"].get("message", "")
+                    raise (PageLeft if was_left else AssertionError)(f"{method}: {answer['error']}")
                 return answer["result"]
             self.note(answer)
 
@@ -108,9 +114,16 @@ class Tab:
         assert "exceptionDetails" not in result, f"{expression}: {result['exceptionDetails']}"
         return result["result"].get("value")
 
+    def holds(self, expression):
+        """False also if the page is left while it is asked."""
+        try:
+            return self.js(f"Boolean({expression})")
+        except PageLeft:
+            return False
+
     def wait(self, expression, why):
         end = time.monotonic() + PATIENCE_S
-        while not self.js(f"Boolean({expression})"):
+        while not self.holds(expression):
             if time.monotonic() > end:
                 raise AssertionError(f"{why}: {expression}")
             time.sleep(0.05)

@@ -212,7 +212,7 @@ std::vector<Case> cases() {
       {"detector_lost", "wave", detector_lost, 0.3, 8, 2, 2, 33},
       {"detector_lost", "two_hands", detector_lost, 0.3, 8, 2, 2, 33},
       {"detector_lost", "shake", detector_lost, 0.3, 11, 2, 2, 33},
-      {"detector_wrong_finger", "wave", detector_wrong, 0.2, 3, 1, 1, 5},
+      {"detector_wrong_finger", "wave", detector_wrong, 0.2, 3.3, 1, 1, 5},
       {"detector_wrong_finger", "two_hands", detector_wrong, 0.2, 3, 1, 1, 5},
       {"detector_wrong_finger", "shake", detector_wrong, 0.2, 11, 2, 2, 5},
       {"tracker_wrong_finger", "wave", wrong, 0.2, 8, 1.5, 1.5, 60},
