@@ -68,7 +68,7 @@ class Calibrate : public SystemTest {
 };
 
 TEST_F(Calibrate, TheTwinsLensIsFoundAndWrittenAsACalibration) {
-  const auto outcome = calibrate({"lens", "--most-s", "30"});
+  const auto outcome = calibrate({"lens", "--most-s", "90"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
   EXPECT_THAT(outcome.output, HasSubstr("report.html"));
   EXPECT_TRUE(fs::exists(scratch_.path() / "twin.calibration" / "report.html"));
