@@ -25,5 +25,7 @@ must_find 'docs/page.md has no heading #nowhere' renderer/good.hpp '/// docs/pag
 must_find 'docs/gone.md is not there' renderer/good.hpp '/// docs/gone.md'
 must_find 'other.md has no heading #gone' docs/page.md '[gone](other.md#gone)'
 must_find 'gone.png is not there' docs/page.md '![gone](gone.png)'
+must_find 'other.md has no heading #gone' docs/page.md $'[a text over\ntwo lines](other.md#gone)'
+must_find 'broken across lines' docs/page.md $'[broken](other.md#two-\nwords)'
 must_find 'cites a page that is not in the repository' renderer/good.hpp '/// as METHOD says'
 echo "all planted gaps were found"
