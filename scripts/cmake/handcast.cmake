@@ -132,12 +132,14 @@ function(handcast_back_ends)
   handcast_use(${target} ${scope} ${ARGN})
 endfunction()
 
-# handcast_loads_back_ends(target): the program loads back ends that are files of their own. They call its functions, and all those whose
+# handcast_loads_back_ends(target folder ...): the program loads back ends that are files of their own. They call its functions, and all
+# those of what every seam uses and of the modules `folder`, even if the program does not call them: all those whose
 # headers install.cmake installs.
 function(handcast_loads_back_ends target)
   set_property(TARGET ${target} PROPERTY ENABLE_EXPORTS ON)
-  foreach(module ipc_base ipc_shm ipc_ring config calib services_joints)
-    target_sources(${target} PRIVATE $<TARGET_OBJECTS:handcast_${module}>)
+  foreach(folder ipc/base ipc/shm ipc/ring config calib ${ARGN})
+    handcast_target_of(${folder} module)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${module}>)
   endforeach()
 endfunction()
 

@@ -46,8 +46,7 @@ foreach(module ipc/base ipc/msg ipc/shm ipc/ring ipc/client)
     FILES_MATCHING PATTERN *.hpp PATTERN *writer.hpp EXCLUDE PATTERN c_calls.hpp EXCLUDE)
 endforeach()
 
-# What cameras and trackers of other people include, which handcast-camera and handcast-pose load: their seams, and what those include.
-# That of detectors would bring half of the renderer.
+# What the back ends of other people include, which the services load: their seams, and what those include.
 add_library(handcast_back_end INTERFACE)
 set_target_properties(handcast_back_end PROPERTIES EXPORT_NAME back_end)
 target_link_libraries(handcast_back_end INTERFACE fmt::fmt tl::expected)
@@ -57,8 +56,11 @@ install(TARGETS handcast_back_end EXPORT handcastTargets)
 install(DIRECTORY config/sections DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/config COMPONENT dev FILES_MATCHING PATTERN *.hpp)
 foreach(header
     calib/calibration.hpp calib/projector_model.hpp config/rig.hpp config/settings/field.hpp config/settings/frozen_file.hpp
-    config/settings/setting_list.hpp ipc/daemon/back_end_files.hpp ipc/daemon/description.hpp services/camera/camera.hpp services/joints/conventions.hpp
-    services/pose/pose_source.hpp services/runtime/backends.hpp)
+    config/settings/setting_list.hpp ipc/daemon/back_end_files.hpp ipc/daemon/description.hpp renderer/base/device_image.hpp renderer/base/image.hpp
+    renderer/base/landmark_points.hpp renderer/base/mip_chain.hpp renderer/correct/deform.hpp renderer/correct/rung.hpp renderer/draw/painter.hpp
+    renderer/hand/hand_mesh.hpp renderer/output/light.hpp renderer/pipeline/frame.hpp services/camera/camera.hpp services/joints/conventions.hpp
+    services/landmarks/detector.hpp services/landmarks/geometry/points.hpp services/pose/pose_source.hpp services/projector/projector.hpp
+    services/runtime/backends.hpp)
   cmake_path(GET header PARENT_PATH folder)
   install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/${folder} COMPONENT dev)
 endforeach()

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "config/sections/twin/world_settings.hpp"
-#include "ipc/base/join.hpp"
-#include "ipc/base/quote.hpp"
 #include "services/landmarks/detector.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
@@ -75,13 +72,12 @@ DetectorChoice choose_detector(const config::Rig& rig, config::Viewpoint at) {
 /// Errors: bad_config (its fallback names no back end, or the calibration has no such camera).
 static Result<Opening> opening_of(const config::Rig& rig, const calib::Calibration& calibration,
                                   std::int64_t epoch_ns, config::Viewpoint at) {
-  const auto names = service::names_of(detector_backends());
   auto settings = config::landmarks_at(rig, at);
-  const auto& fallback = settings.fallback;
-  if (!fallback.empty() && std::ranges::find(names, fallback) == names.end())
-    return fail(Errc::bad_config, fmt::format("{}: there is no back end {}; there are: {}",
-                                              config::name_at(at, "landmarks.fallback"),
-                                              quote(fallback), join(names, ", ")));
+  const auto name = config::name_at(at, "landmarks");
+  if (!settings.fallback.empty())
+    if (const auto known = service::find_backend(name, settings.fallback, detector_backends());
+        !known)
+      return fail_in(name + ".fallback", known.error());
   auto camera = calib::camera_at(calibration, at);
   if (!camera) return tl::make_unexpected(camera.error());
   settings.backend = choose_detector(rig, at).backend;

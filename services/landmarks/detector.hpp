@@ -12,7 +12,7 @@
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/landmarks.hpp"
 #include "ipc/shm/open_ring.hpp"
-#include "services/landmarks/tracker/tracker_hints.hpp"
+#include "services/landmarks/geometry/points.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::landmarks {
@@ -57,6 +57,8 @@ struct Opening {
 /// open_detector(), check_detector() and the service put before them. They name settings as the
 /// section of the service has them: "replay.directory".
 using DetectorBackend = service::Backend<Detector, Opening>;
+/// Of a back end that is a file of its own: landmarks/NAME.so.
+extern "C" const service::LoadedBackEnd<DetectorBackend> handcast_landmarks_back_end;
 
 /// All detectors: the landmark models, the twin, recordings.
 std::span<const DetectorBackend> detector_backends();

@@ -5,6 +5,7 @@
 #include "services/landmarks/finder/hand_finder.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
 #include "services/landmarks/models/models_folder.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::landmarks {
 namespace {

@@ -10,7 +10,7 @@
 #include "ipc/base/result.hpp"
 #include "ipc/msg/light_source.hpp"
 #include "renderer/output/light.hpp"
-#include "renderer/pipeline/pipeline.hpp"
+#include "renderer/pipeline/frame.hpp"
 #include "services/runtime/backends.hpp"
 
 namespace handcast::projector {
@@ -43,6 +43,8 @@ class Projector {
 
 /// A back end, opened with the rig and its calibration.
 using ProjectorBackend = service::Backend<Projector, config::Rig, calib::Calibration>;
+/// Of a back end that is a file of its own: projector/NAME.so.
+extern "C" const service::LoadedBackEnd<ProjectorBackend> handcast_projector_back_end;
 
 /// All back ends of this build.
 std::span<const ProjectorBackend> projector_backends();

@@ -11,6 +11,7 @@
 #include "services/lab/twin/camera_scene.hpp"
 #include "services/lab/twin/twin.hpp"
 #include "services/landmarks/detector.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::bench {
 

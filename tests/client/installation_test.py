@@ -205,10 +205,10 @@ class WithARig(unittest.TestCase):
         self.processes.append(process)
         return process
 
-    def start_rig(self, *settings, out=None):
+    def start_rig(self, *settings, out=None, **env):
         slow = ["camera.rate_hz=60", "projector.rate_hz=60", "observer.enabled=false", *settings]
         rig = self.start(tree / "bin/handcast", "up", rig_file(),
-                         *(word for setting in slow for word in ("--set", setting)), *(["--out", out] if out else []))
+                         *(word for setting in slow for word in ("--set", setting)), *(["--out", out] if out else []), **env)
         self.said = ""
         for line in rig.stdout:
             self.said += line
@@ -284,6 +284,64 @@ const service::LoadedBackEnd<PoseBackend> handcast_pose_back_end{.row = {.name =
         said = run(tree / "bin/handcast", "config", "--check", rig_file(), "--set", "pose.backend=tracker", codes=(100,),
                    both=True, LD_LIBRARY_PATH=str(scratch / "own"))
         self.assertIn("no tracker of twin", said)
+
+    def test_may_be_a_detector_and_a_projector(self):
+        sources = {
+            "landmarks": """#include "services/landmarks/detector.hpp"
+namespace handcast::landmarks {
+/// Sees the hands where the tracker has them.
+class Believer final : public Detector {
+  Result<msg::Landmarks> detect(const msg::CameraFrame& frame, const Hints& hints, Deadline) override {
+    msg::Landmarks seen{.header = {frame.header.frame_id, frame.header.origin_ns, 0}};
+    for (int side = 0; side < msg::kMaxHands; ++side) {
+      if (!hints[side] || !is_finite(*hints[side])) continue;
+      auto& hand = seen.hands[seen.count++];
+      hand.side = static_cast<msg::Side>(side);
+      hand.presence = 1;
+      for (int i = 0; i < msg::kLandmarks; ++i) hand.points[i] = {(*hints[side])[i].x, (*hints[side])[i].y, 1, 1};
+    }
+    return seen;
+  }
+};
+static Result<std::unique_ptr<Detector>> open(const Opening&) { return std::make_unique<Believer>(); }
+const service::LoadedBackEnd<DetectorBackend> handcast_landmarks_back_end{.row = {.name = "own", .open = open}};
+}
+""",
+            "projector": """#include "ipc/base/log.hpp"
+#include "renderer/output/light.hpp"
+#include "services/projector/projector.hpp"
+namespace handcast::projector {
+/// Says how bright the first light on a hand with landmarks is.
+class Meter final : public Projector {
+  Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t, const renderer::LightTable& table, Deadline) override {
+    const auto now = now_ns();
+    if (said_ || frame.hands.empty() || !frame.hands[0].has_landmarks || frame.region.empty()) return PresentTimes{now, now};
+    std::vector<std::uint32_t> light(frame.colour.width * frame.colour.height);
+    renderer::write_light(frame.colour, frame.region, table, {light.data(), frame.colour.width, frame.colour.height, frame.colour.width});
+    const auto lit = std::count_if(light.begin(), light.end(), [](auto rgba) { return (rgba & 0xffffff) != 0; });
+    log::info("{} pixels are lit", lit);
+    said_ = lit > 0;
+    return PresentTimes{now, now};
+  }
+  bool said_ = false;
+};
+static Result<std::unique_ptr<Projector>> open(const config::Rig&, const calib::Calibration&) { return std::make_unique<Meter>(); }
+const service::LoadedBackEnd<ProjectorBackend> handcast_projector_back_end{.row = {.name = "own", .open = open}};
+}
+"""}
+        for service, text in sources.items():
+            source = scratch / f"own_{service}.cpp"
+            source.write_text(text)
+            (scratch / "own/handcast" / service).mkdir()
+            self.compile(f"../{service}/own", source, *flags("--cflags"))
+        rig = self.start_rig("landmarks.backend=own", "projector.backend=own", LD_LIBRARY_PATH=str(scratch / "own"))
+        for line in rig.stdout:
+            self.said += line
+            if re.search(r"projector +info +[1-9]\d+ pixels are lit", line):
+                break
+        else:
+            self.fail(self.said)
+        handcast("down")
 
     def test_that_cannot_be_loaded_is_refused_with_a_sentence(self):
         (self.own / "text.so").write_text("no library\n")

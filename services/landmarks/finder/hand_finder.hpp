@@ -14,7 +14,6 @@
 #include "services/landmarks/geometry/points.hpp"
 #include "services/landmarks/geometry/region.hpp"
 #include "services/landmarks/models/landmark_models.hpp"
-#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::landmarks {
 

@@ -5,7 +5,7 @@
 
 #include "renderer/base/resting_mean.hpp"
 #include "services/landmarks/finder/found_hand.hpp"
-#include "services/landmarks/tracker/tracker_hints.hpp"
+#include "services/landmarks/geometry/points.hpp"
 
 namespace handcast::landmarks {
 

@@ -2,7 +2,9 @@
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
+#include <optional>
 
+#include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/landmarks.hpp"
 
 namespace handcast::landmarks {
@@ -10,6 +12,9 @@ namespace handcast::landmarks {
 /// The 21 landmarks of a hand in pixels, in MediaPipe's order; (0, 0) is the centre of the top-left
 /// pixel, x points right, y down.
 using Points = std::array<glm::vec2, msg::kLandmarks>;
+
+/// The tracker's joints in a camera image, by msg::Side; empty for a hand that it does not see.
+using Hints = std::array<std::optional<Points>, msg::kMaxHands>;
 
 /// The mean of the points.
 glm::vec2 centre_of(const Points& points_px);

@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <utility>
 
 #include "calib/calibration.hpp"
@@ -12,9 +11,6 @@
 #include "services/landmarks/geometry/points.hpp"
 
 namespace handcast::landmarks {
-
-/// The tracker's joints in a camera image, by msg::Side; empty for a hand that it does not see.
-using Hints = std::array<std::optional<Points>, msg::kMaxHands>;
 
 /// The tracker's hands at the time of any image. One thread.
 class TrackerHints {

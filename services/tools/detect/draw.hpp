@@ -4,7 +4,7 @@
 
 #include "renderer/base/image.hpp"
 #include "services/landmarks/finder/found_hand.hpp"
-#include "services/landmarks/tracker/tracker_hints.hpp"
+#include "services/landmarks/geometry/points.hpp"
 
 namespace handcast::detect {
 

@@ -8,6 +8,7 @@
 #include "ipc/msg/owned.hpp"
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/detector.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 
 namespace handcast::landmarks {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "services/lab/training/trial.hpp"
 #include "services/landmarks/models/mediapipe_files.hpp"
+#include "services/landmarks/tracker/tracker_hints.hpp"
 #include "tests/scratch.hpp"
 #include "tests/services/landmarks/detector_scenes.hpp"
 
