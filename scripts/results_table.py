@@ -24,7 +24,7 @@ from tables.verdicts import verdict
 def runs_of(part, path):
     """The runs of a table. Those of which README.md and docs/results.md speak must all be there."""
     runs = Runs(path, variants_of(part), part)
-    if part in ("comparison", "unseen", "first_seconds"):
+    if part in ("comparison", "unseen", "first_seconds", "later"):
         runs.require_all()
         runs.require(["paper", "paper_network", "handcast"])
     if part == "unseen":

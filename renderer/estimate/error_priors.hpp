@@ -44,7 +44,7 @@ inline constexpr std::array kErrorPriors{
     ErrorPrior{error::kShift, 2, 10e-3, kLasting_s},
     ErrorPrior{error::kShift + 2, 1, 2.5e-3, kLasting_s},
     ErrorPrior{error::kTurn, 3, 1.5 * kDegree, kLasting_s},
-    ErrorPrior{error::kSize, 1, 0.03, kLasting_s},
+    ErrorPrior{error::kSize, 1, 0.01, kLasting_s},
     ErrorPrior{error::kMissing, kFingers, 0.1, kLasting_s},
     ErrorPrior{error::kSpread, kFingers, 2 * kDegree, kPosture_s},
     ErrorPrior{error::kRow, 2 * error::kRows, kSeenRow_m, kPosture_s},

@@ -132,9 +132,8 @@ function(handcast_back_ends)
   handcast_use(${target} ${scope} ${ARGN})
 endfunction()
 
-# handcast_loads_back_ends(target folder ...): the program loads back ends that are files of their own. They call its functions, and all
-# those of what every seam uses and of the modules `folder`, even if the program does not call them: all those whose
-# headers install.cmake installs.
+# handcast_loads_back_ends(target folder ...): the program loads back ends that are files of their own. They call the program's functions,
+# among which are all of the modules that every seam uses and of the modules `folder`; install.cmake installs their headers.
 function(handcast_loads_back_ends target)
   set_property(TARGET ${target} PROPERTY ENABLE_EXPORTS ON)
   foreach(folder ipc/base ipc/shm ipc/ring config calib ${ARGN})

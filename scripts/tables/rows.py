@@ -52,7 +52,8 @@ BY_VARIANT = {
         "perfect_sensors_our_mesh": ("perfect sensors, our own mesh", "all_errors"),
     },
 }
-BY_VARIANT["first_seconds"] = {variant: BY_VARIANT["comparison"][variant] for variant in ("paper", "paper_network", "handcast")}
+for part in ("first_seconds", "later"):
+    BY_VARIANT[part] = {variant: BY_VARIANT["comparison"][variant] for variant in ("paper", "paper_network", "handcast")}
 BY_VARIANT["jitter"] = {variant: BY_VARIANT["comparison"][variant] for variant in
                         ("baseline", "paper", "paper_network", "handcast", "handcast_mediapipe")}
 # What has real detectors, on motions that nothing was tuned on: a table for each mesh.

@@ -273,7 +273,7 @@ grep -v usual "$work/results.csv" | sed 's/runs=12/runs=10/' >"$work/less.csv"
 ! table hardware_parts "$work/less.csv" "$work/document.md" 2>/dev/null || fail "parts without what they are compared with are not refused"
 
 has_place() { grep -q "<!-- $2: begin -->" "$root/$1" || fail "$1 has no place for $2"; }
-for part in comparison unseen levers fidelity causes motions fast two_hands jitter first_seconds no_tracker; do
+for part in comparison unseen levers fidelity causes motions fast two_hands jitter first_seconds later no_tracker; do
   has_place docs/lab/results_tables.md "$part"
   [ -e "$root/config/sweeps/$part.toml" ] || fail "there is no plan config/sweeps/$part.toml"
 done

@@ -76,6 +76,13 @@ INSTANTIATE_TEST_SUITE_P(Motions, Accuracy,
                            return name;
                          });
 
+/// What is learned of a person must not be what the detector gets wrong of them.
+TEST(LongRuns, TheLightOnAStillHandIsAsGoodAfterTwentySeconds) {
+  const auto soon = run_rig("twin", "builtin:still", 1.2, kStranger, 24, 1),
+             later = run_rig("twin", "builtin:still", 1.2, kStranger, 24, 20);
+  EXPECT_LT(figure(later, "/interior_mm/mean"), 1.3 * figure(soon, "/interior_mm/mean"));
+}
+
 /// The rigs as they are shipped: real detectors at their ages, and frames that miss refreshes.
 TEST(ShippedRigs, OursIsBetterThanThePapersAndThePapersThanTheTrackerAlone) {
   const auto error_mm = [](const std::string& name) {

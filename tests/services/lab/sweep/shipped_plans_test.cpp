@@ -153,10 +153,11 @@ TEST(ShippedPlans, NoOtherPlanHasAPersonOfTheBenchmark) {
   EXPECT_GT(plans, 15);
 }
 
-TEST(ShippedPlans, JitterAndFirstSecondsAreOfTheRigsOfTheComparison) {
+TEST(ShippedPlans, JitterAndTimesAreOfTheRigsOfTheComparison) {
   std::map<std::string, config::Rig> compared;
   for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
-  for (const auto& [plan, variants] : {std::pair("jitter", 5u), std::pair("first_seconds", 3u)}) {
+  for (const auto& [plan, variants] :
+       {std::pair("jitter", 5u), std::pair("first_seconds", 3u), std::pair("later", 3u)}) {
     const auto rigs = rigs_of(plan);
     EXPECT_EQ(rigs.size(), variants) << plan;
     for (const auto& [name, rig] : rigs)
@@ -165,10 +166,12 @@ TEST(ShippedPlans, JitterAndFirstSecondsAreOfTheRigsOfTheComparison) {
   }
 }
 
-TEST(ShippedPlans, TheFirstSecondsAreScored) {
-  const auto plan = load_plan(source_root() / "config/sweeps/first_seconds.toml");
-  ASSERT_TRUE(plan) << plan.error().what;
-  EXPECT_EQ(plan->warm_up_s, 0);
+TEST(ShippedPlans, TheFirstSecondsAreScoredAndLaterTwentySecondsAreNot) {
+  for (const auto& [name, warm_up_s] : {std::pair("first_seconds", 0), std::pair("later", 20)}) {
+    const auto plan = load_plan(source_root() / "config/sweeps" / (std::string(name) + ".toml"));
+    ASSERT_TRUE(plan) << plan.error().what;
+    EXPECT_EQ(plan->warm_up_s, warm_up_s);
+  }
 }
 
 /// The values of a setting in the grid of a shipped plan.
@@ -187,7 +190,7 @@ std::set<std::string> values_in(const std::string& plan_name, const std::string&
 TEST(ShippedPlans, TheTablesOfAccuracyAreOfACarefulInstallation) {
   const auto careful = rigs_of("comparison").front().second;
   for (const auto* name : {"levers", "fidelity", "motions", "fast", "two_hands", "jitter",
-                           "first_seconds", "unseen", "hardware"})
+                           "first_seconds", "later", "unseen", "hardware"})
     for (const auto& [variant, rig] : rigs_of(name)) {
       EXPECT_EQ(rig.twin.shape.roll_deg, careful.twin.shape.roll_deg) << name << " " << variant;
       auto others =
