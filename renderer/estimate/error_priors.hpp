@@ -32,11 +32,12 @@ struct ErrorPrior {
   }
 };
 
-/// How long errors of an installation or a person, of a posture, and of a moment last, and at least
+/// How long errors of an installation or a person, of a posture, and of a moment last (that of a
+/// size: as long as the detector's error of it may be taken for the tracker's), and at least
 /// those of the tracker of more than three standard deviations: a finger that is taken for another
 /// stays so until it jumps back. Such errors of the detector last.
-inline constexpr double kLasting_s = 60, kPosture_s = 0.7, kDrift_s = 0.3, kSeen_s = 0.35,
-                        kGross_s = 2;
+inline constexpr double kLasting_s = 60, kSize_s = 3, kPosture_s = 0.7, kDrift_s = 0.3,
+                        kSeen_s = 0.35, kGross_s = 2;
 
 /// Where the tracker's calibration and its idea of the hand's size put the hand, and the fingers;
 /// where the detector sees rows of joints.
@@ -44,7 +45,7 @@ inline constexpr std::array kErrorPriors{
     ErrorPrior{error::kShift, 2, 10e-3, kLasting_s},
     ErrorPrior{error::kShift + 2, 1, 2.5e-3, kLasting_s},
     ErrorPrior{error::kTurn, 3, 1.5 * kDegree, kLasting_s},
-    ErrorPrior{error::kSize, 1, 0.01, kLasting_s},
+    ErrorPrior{error::kSize, 1, 0.03, kSize_s},
     ErrorPrior{error::kMissing, kFingers, 0.1, kLasting_s},
     ErrorPrior{error::kSpread, kFingers, 2 * kDegree, kPosture_s},
     ErrorPrior{error::kRow, 2 * error::kRows, kSeenRow_m, kPosture_s},
