@@ -32,10 +32,10 @@ struct ErrorPrior {
   }
 };
 
-/// How long errors of an installation or a person, of a posture, and of a moment last (that of a
-/// size: as long as the detector's error of it may be taken for the tracker's), and at least
-/// those of the tracker of more than three standard deviations: a finger that is taken for another
-/// stays so until it jumps back. Such errors of the detector last.
+/// How long errors of an installation or a person, of a size, of a posture, and of a moment last,
+/// and at least those of the tracker of more than three standard deviations: a finger that is taken
+/// for another stays so until it jumps back. Such errors of the detector last. A size that lasted
+/// longer would follow a detector that sees other flesh too small.
 inline constexpr double kLasting_s = 60, kSize_s = 3, kPosture_s = 0.7, kDrift_s = 0.3,
                         kSeen_s = 0.35, kGross_s = 2;
 

@@ -311,7 +311,7 @@ const service::LoadedBackEnd<DetectorBackend> handcast_landmarks_back_end{.row =
 #include "renderer/output/light.hpp"
 #include "services/projector/projector.hpp"
 namespace handcast::projector {
-/// Says how bright the first light on a hand with landmarks is.
+/// Counts the pixels of the first light on a hand with landmarks.
 class Meter final : public Projector {
   Result<PresentTimes> present(const renderer::Frame& frame, std::int64_t, const renderer::LightTable& table, Deadline) override {
     const auto now = now_ns();

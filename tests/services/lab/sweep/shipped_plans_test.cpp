@@ -153,7 +153,7 @@ TEST(ShippedPlans, NoOtherPlanHasAPersonOfTheBenchmark) {
   EXPECT_GT(plans, 15);
 }
 
-TEST(ShippedPlans, JitterAndTimesAreOfTheRigsOfTheComparison) {
+TEST(ShippedPlans, JitterFirstSecondsAndLaterAreOfTheRigsOfTheComparison) {
   std::map<std::string, config::Rig> compared;
   for (const auto& [name, rig] : rigs_of("comparison")) compared.emplace(name, rig);
   for (const auto& [plan, variants] :
@@ -166,7 +166,7 @@ TEST(ShippedPlans, JitterAndTimesAreOfTheRigsOfTheComparison) {
   }
 }
 
-TEST(ShippedPlans, TheFirstSecondsAreScoredAndLaterTwentySecondsAreNot) {
+TEST(ShippedPlans, FirstSecondsAndLaterBeginWhenTheirTablesSay) {
   for (const auto& [name, warm_up_s] : {std::pair("first_seconds", 0), std::pair("later", 20)}) {
     const auto plan = load_plan(source_root() / "config/sweeps" / (std::string(name) + ".toml"));
     ASSERT_TRUE(plan) << plan.error().what;
