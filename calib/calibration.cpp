@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_access.hpp>
 #include <limits>
+#include <utility>
 
 #include "calib/rigid.hpp"
 
@@ -47,9 +49,21 @@ double distance_from_rigid(const glm::dmat4& transform) {
 }
 
 glm::dmat4x3 Calibration::projection() const {
-  const auto from_ray = projector.from_camera * camera.matrix();
-  return {from_ray[0], from_ray[1], from_ray[2] - projector.parallax / projector.plane_m,
-          projector.parallax};
+  auto from_ray = projector.from_camera * camera.matrix();
+  from_ray[2] -= projector.parallax / projector.plane_m;
+  // What the camera sees in the middle is before the projector.
+  const double before = (projector.from_camera * glm::dvec3(camera.cx_px, camera.cy_px, 1)).z;
+  const double scale = std::copysign(1 / glm::length(glm::row(from_ray, 2)), before);
+  return {scale * from_ray[0], scale * from_ray[1], scale * from_ray[2],
+          scale * projector.parallax};
+}
+
+double Calibration::degrees_apart() const {
+  const glm::dvec3 hand_m = projector.plane_m * (glm::inverse(camera.matrix()) *
+                                                 glm::dvec3((camera.width_px - 1) / 2.0,
+                                                            (camera.height_px - 1) / 2.0, 1));
+  const auto to_projector = glm::normalize(projector.centre_m(camera) - hand_m);
+  return glm::degrees(std::acos(std::min(1.0, glm::dot(to_projector, -glm::normalize(hand_m)))));
 }
 
 double Calibration::mm_per_projector_px(double distance_m) const {
@@ -76,6 +90,13 @@ Result<PlacedCamera> camera_at(const Calibration& calibration, config::Viewpoint
         "`handcast calibrate`");
   return PlacedCamera{second->device, second->camera,
                       second->from_camera * calibration.camera_from_tracker};
+}
+
+Calibration at_projector(Calibration calibration, config::Viewpoint at) {
+  if (at == config::Viewpoint::first) return calibration;
+  std::swap(calibration.projector_device, calibration.projector2->device);
+  std::swap(calibration.projector, calibration.projector2->model);
+  return calibration;
 }
 
 Calibration reference_rig() {

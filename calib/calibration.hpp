@@ -63,6 +63,12 @@ struct SecondCamera {
   glm::dmat4 from_camera{1};  ///< from the space of the other camera to its own; rigid, in metres
 };
 
+/// A second projector, which lights the same hands from another side.
+struct SecondProjector {
+  std::string device;  ///< as Calibration::projector_device
+  ProjectorModel model;
+};
+
 /// The calibration of a rig: camera, tracker and projector. The names of transforms read from right
 /// to left.
 struct Calibration {
@@ -78,10 +84,15 @@ struct Calibration {
   std::optional<SecondCamera> camera2;  ///< empty: the rig has one camera
   glm::dmat4 camera_from_tracker{1};    ///< rigid, in metres
   ProjectorModel projector;
-  Made made;  ///< not a part of `id`
+  std::optional<SecondProjector> projector2;  ///< empty: the rig has one; not a part of `id`
+  Made made;                                  ///< not a part of `id`
 
-  /// Maps homogeneous points in camera space, metres, to homogeneous projector pixels.
+  /// Maps homogeneous points in camera space, metres, to homogeneous projector pixels, whose third
+  /// component is the distance along the projector's axis, metres.
   glm::dmat4x3 projection() const;
+  /// The angle between camera and projector, degrees, seen from what is in the middle of the
+  /// camera's image at depth plane_m.
+  double degrees_apart() const;
   /// Size of a projector pixel in millimetres on a plane that faces the camera at `distance_m`.
   double mm_per_projector_px(double distance_m) const;
 };
@@ -101,6 +112,10 @@ struct PlacedCamera {
 PlacedCamera first_camera(const Calibration& calibration);
 /// The camera at a viewpoint. Errors: bad_config (the calibration has no second camera).
 Result<PlacedCamera> camera_at(const Calibration& calibration, config::Viewpoint at);
+
+/// The calibration as the projector at a viewpoint has it: `projector` is its own, `projector2` the
+/// other one. There must be a second one for the second viewpoint.
+Calibration at_projector(Calibration calibration, config::Viewpoint at);
 
 /// Reads a calibration file: TOML, with matrices as rows. An empty path gives the reference rig; a
 /// frozen file (config::freeze()) is read like the file. Errors: bad_config (the file cannot be

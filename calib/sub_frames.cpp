@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "config/sections/sub_frames.hpp"
@@ -35,6 +36,34 @@ Result<Calibration> load_calibration(const std::filesystem::path& file, config::
                             "height; the calibration has {}x{}",
                             config::word_of(packing), width_px, height_px));
   return with_scaled_projector(*calibration, 0.5);
+}
+
+static bool is_same(const CameraModel& a, const CameraModel& b) {
+  const auto numbers = [](const CameraModel& c) {
+    return std::array{c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.k1, c.k2, c.p1, c.p2, c.k3};
+  };
+  return a.width_px == b.width_px && a.height_px == b.height_px && numbers(a) == numbers(b);
+}
+
+Result<Calibration> load_calibration(const std::filesystem::path& file,
+                                     const config::Projector& first,
+                                     const config::SecondProjector& second) {
+  auto calibration = load_calibration(file, first.packing);
+  if (!calibration || second.backend == "none") return calibration;
+  if (second.calibration.empty())
+    return fail(
+        Errc::bad_config,
+        "projector2.calibration is empty: a second projector needs a calibration of its own, "
+        "of the same camera");
+  auto other = load_calibration(second.calibration, second.packing);
+  if (!other) return fail_in("projector2.calibration", other.error());
+  if (!is_same(calibration->camera, other->camera))
+    return fail(Errc::bad_config,
+                fmt::format("projector2.calibration: {} has another lens of the camera than the "
+                            "calibration of the rig; copy that one, and measure only `screen` anew",
+                            second.calibration));
+  calibration->projector2 = SecondProjector{other->projector_device, other->projector};
+  return calibration;
 }
 
 Calibration output_of(const Calibration& sub_frame, config::Packing packing) {

@@ -16,6 +16,13 @@ Calibration with_scaled_projector(const Calibration& calibration, double factor)
 /// load_calibration(); bad_config (the output frame cannot be halved).
 Result<Calibration> load_calibration(const std::filesystem::path& file, config::Packing packing);
 
+/// Reads the calibration of a rig: that of `file` for `first`, and, unless `second` has no back
+/// end, its projector. Errors: those of load_calibration(); bad_config (the file of the second one
+/// is of another camera).
+Result<Calibration> load_calibration(const std::filesystem::path& file,
+                                     const config::Projector& first,
+                                     const config::SecondProjector& second);
+
 /// The calibration for the output frame, from that for a sub-frame.
 Calibration output_of(const Calibration& sub_frame, config::Packing packing);
 

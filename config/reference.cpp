@@ -56,17 +56,18 @@ std::string heading(const Section& section) {
 }
 
 /// A section that has the settings of another one, said once: in those within it too. The table has
-/// the settings with defaults of their own.
+/// the settings with defaults of their own, and its own settings.
 std::string print_as(const Section& section, const std::string& other, const Listing& listing) {
   std::string rows;
   for (const auto& each : listing) {
     if (each.path != section.path && !each.path.starts_with(section.path + ".")) continue;
-    for (const auto& setting : each.settings)
-      if (print_value(setting) != print_value(*find_setting(listing, name_at_first(setting.path))))
-        rows += row(setting);
+    for (const auto& setting : each.settings) {
+      const auto* first = find_setting(listing, name_at_first(setting.path));
+      if (!first || print_value(setting) != print_value(*first)) rows += row(setting);
+    }
   }
   return fmt::format("{} It has the settings and sections of [{}]{}.\n", heading(section), other,
-                     rows.empty() ? "" : ", with these defaults") +
+                     rows.empty() ? "" : ", but for these") +
          (rows.empty() ? "" : std::string(kTable) + rows);
 }
 

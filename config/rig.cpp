@@ -48,6 +48,8 @@ constexpr std::string_view kPaths[] = {"calibration",
                                        "desk.cues",
                                        "desk.gestures",
                                        "projector.lamp.password_file",
+                                       "projector2.calibration",
+                                       "projector2.lamp.password_file",
                                        "desk.page.recordings",
                                        "watch.folder",
                                        "twin.motion",
@@ -95,8 +97,9 @@ void resolve_contents(const Listing& listing, const std::filesystem::path& folde
 }
 
 void check_cores(const Rig& rig, std::string_view file, Faults& faults) {
-  for (const auto* service : {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector",
-                              "dlp", "content", "desk", "observer", "watch", "bridge"})
+  for (const auto* service :
+       {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector", "projector2", "dlp",
+        "content", "desk", "observer", "watch", "bridge"})
     for (const double core : process_of(rig, service).cores)
       if (core != std::floor(core))
         faults.add(fmt::format("{}: {}.process.cores: {} is not the number of a core", file,
@@ -201,23 +204,37 @@ bool is_path(std::string_view setting, std::string_view value) {
   return !value.starts_with("builtin:") && !value.starts_with(kFrozen);
 }
 
-std::string name_at(Viewpoint at, std::string_view name) {
-  for (const std::string_view section : {"camera", "landmarks"})
-    if (at == Viewpoint::second && name.substr(0, name.find('.')) == section)
-      return std::string(section) + "2" + std::string(name.substr(section.size()));
+/// The name at a viewpoint, if it begins with one of these words.
+static std::string numbered(Viewpoint at, std::string_view name,
+                            std::initializer_list<std::string_view> words) {
+  for (const auto word : words)
+    if (at == Viewpoint::second && name.substr(0, name.find('.')) == word)
+      return std::string(word) + "2" + std::string(name.substr(word.size()));
   return std::string(name);
 }
 
+std::string name_at(Viewpoint at, std::string_view name) {
+  return numbered(at, name, {"camera", "landmarks"});
+}
+
+std::string name_at_projector(Viewpoint at, std::string_view name) {
+  return numbered(at, name, {"projector", "projection"});
+}
+
 std::string name_at_first(std::string_view name) {
-  for (const std::string first : {"camera", "landmarks"})
-    if (const auto section = name.substr(0, name.find('.'));
-        section == name_at(Viewpoint::second, first))
-      return first + std::string(name.substr(section.size()));
+  for (const std::string first : {"camera", "landmarks", "projector", "projection"})
+    if (const auto word = name.substr(0, name.find('.')); word == first + "2")
+      return first + std::string(name.substr(word.size()));
   return {};
 }
 
 const Camera& camera_at(const Rig& rig, Viewpoint at) {
   return at == Viewpoint::first ? rig.camera : rig.camera2;
+}
+
+Rig rig_at_projector(Rig rig, Viewpoint at) {
+  if (at == Viewpoint::second) rig.projector = rig.projector2;
+  return rig;
 }
 
 const Landmarks& landmarks_at(const Rig& rig, Viewpoint at) {
@@ -231,6 +248,7 @@ static const Process* find_process(const Rig& rig, std::string_view service) {
   if (service == "landmarks") return &rig.landmarks.process;
   if (service == "landmarks2") return &rig.landmarks2.process;
   if (service == "projector") return &rig.projector.process;
+  if (service == "projector2") return &rig.projector2.process;
   if (service == "dlp") return &rig.dlp.process;
   if (service == "content") return &rig.content.process;
   if (service == "desk") return &rig.desk.process;

@@ -35,6 +35,7 @@ struct Rig {
   Landmarks landmarks;
   Landmarks landmarks2;
   Projector projector;
+  SecondProjector projector2;
   Dlp dlp;
   Content content;
   Light light;
@@ -67,6 +68,9 @@ void describe(Visitor& visitor, Rig& rig) {
   visitor.section("landmarks", rig.landmarks, "The landmark detector.");
   visitor.section("landmarks2", rig.landmarks2, "The landmark detector of the second camera.");
   visitor.section("projector", rig.projector, "The projector.");
+  visitor.section("projector2", rig.projector2,
+                  "A second projector, which lights the same hands from another side; backend = "
+                  "\"none\": there is none.");
   visitor.section("dlp", rig.dlp, "The projector's own controller.");
   visitor.section("content", rig.content, "What is on the hands.");
   visitor.section("light", rig.light, "The light as a whole, as a person beside it turns it.",
@@ -85,13 +89,19 @@ void describe(Visitor& visitor, Rig& rig) {
 /// The name at a viewpoint of what is called `name` ("camera.frames", "landmarks") at the first
 /// one: "camera2.frames", "landmarks2". Names of what all viewpoints share ("pose.hands") stay.
 std::string name_at(Viewpoint at, std::string_view name);
-/// The reverse: what is called "camera2.v4l2" at the second viewpoint is "camera.v4l2". "" for
-/// names that are not of the second one.
+/// The same of what is the projector's: "projector.kms" and "projection.frames" become
+/// "projector2.kms" and "projection2.frames".
+std::string name_at_projector(Viewpoint at, std::string_view name);
+/// The reverse of both: what is called "camera2.v4l2" at the second viewpoint is "camera.v4l2". ""
+/// for names that are not of the second one.
 std::string name_at_first(std::string_view name);
 /// The section of the camera at a viewpoint.
 const Camera& camera_at(const Rig& rig, Viewpoint at);
 /// The section of the landmark detector at a viewpoint.
 const Landmarks& landmarks_at(const Rig& rig, Viewpoint at);
+
+/// The rig as the projector at a viewpoint has it: `projector` is its own section.
+Rig rig_at_projector(Rig rig, Viewpoint at);
 
 /// The section [NAME.process] of the service with this name ("camera"); of a guest, that of the
 /// service that it feeds (guests.hpp); the defaults if there is no such service.

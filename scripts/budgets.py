@@ -8,12 +8,12 @@ import pathlib
 import re
 import statistics
 
-SHOW_LINES = 67_150
+SHOW_LINES = 67_550
 SHOW_FILES = 765
 MEDIAN_LINES = 64  # of a source, at least: a file is a subject, not a function. The aim is 70.
 FOLDED_LINES = 300  # a header with one user is part of it, unless the file becomes longer than this
 UNFOLDED_HEADERS = 3  # the most that may be left to fold. The aim is none.
-DOCUMENT_WORDS = 52_000  # without the generated ones
+DOCUMENT_WORDS = 52_900  # without the generated ones
 DOCUMENT_COLUMNS = 120
 README_LINES = 120
 DECISION_LINES = 6

@@ -31,12 +31,16 @@ constexpr std::array<std::string_view, 5> words_of(Packing) {
 
 /// [projector.file]
 struct ProjectorFile {
+  std::string folder = "light";
   bool film = false;
   int every = 100;
 };
 
 template <class Visitor>
 void describe(Visitor& visitor, ProjectorFile& file) {
+  visitor.field("folder", file.folder,
+                "The folder for the files, relative to that of `up --out`, or else to the current "
+                "one.");
   visitor.field("film", file.film, "Writes one film, light.avi, instead of pictures.");
   visitor.field("every", file.every, between(1, 100000), "Every n-th frame is written.");
 }
@@ -178,6 +182,23 @@ void describe(Visitor& visitor, Projector& projector) {
   visitor.section("window", projector.window, "The back end `window`.");
   visitor.section("lamp", projector.lamp, "The projector's lamp and shutter, over the network.");
   visitor.section("process", projector.process, "The process of the service.");
+}
+
+/// [projector2]
+struct SecondProjector : Projector {
+  SecondProjector() {
+    backend = "none";
+    file.folder = "light2";
+  }
+  std::string calibration;
+};
+
+template <class Visitor>
+void describe(Visitor& visitor, SecondProjector& projector) {
+  visitor.field("calibration", projector.calibration,
+                "The calibration file of a rig with the same camera and this projector, of which "
+                "its [projector] is used.");
+  describe(visitor, static_cast<Projector&>(projector));
 }
 
 /// [hand]

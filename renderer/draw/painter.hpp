@@ -26,7 +26,7 @@ struct DrawnHand {
   const HandMesh* mesh = nullptr;          ///< triangles, texture coordinates and charts
   MipView picture;                         ///< without texels: white
   std::span<const glm::vec2> position_px;  ///< projector px
-  std::span<const float> depth_m;          ///< distance along the camera's axis; nearer wins
+  std::span<const float> depth_m;          ///< along the projector's axis; nearer wins
   std::span<const float> light;            ///< factor of the levels, 0..1; empty: 1 everywhere
   /// Numbers of the contents of `mesh` and `picture`, see new_revision(): as long as one is the
   /// same, a back end may draw with a copy that it made before. 0: the contents may have changed.

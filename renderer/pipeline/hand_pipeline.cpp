@@ -215,13 +215,13 @@ void HandPipeline::register_motion(HandFrame& frame, LateRegistration& late,
   frame.registered = late.correct(late_hand(frame), target_ns);
 }
 
-void HandPipeline::skin(HandFrame& frame, float shading) {
+void HandPipeline::skin(HandFrame& frame, float shading, bool is_shared) {
   auto& shape = states_.shape;
   frame.drawn = frame.corrected.estimated.value_or(frame.corrected.posed);
   frame.from_px = to_projector(frame.drawn.landmarks, frame.drawn);
   frame.to_px = shape.fingers.moved(to_projector(frame.registered.landmarks, frame.drawn));
-  frame.skinned =
-      shape.surface.pose(frame.drawn.pose, settings_.skin, calibration_, shading, frame.presence);
+  frame.skinned = shape.surface.pose(frame.drawn.pose, settings_.skin, calibration_, shading,
+                                     frame.presence, is_shared);
 }
 
 LandmarkPoints HandPipeline::to_projector(const LandmarkPoints& camera_px,
@@ -263,12 +263,17 @@ void HandPipeline::learn_outline(const HandFrame& frame, std::int64_t target_ns,
   shape.fingers.measure(target_ns, frame.skinned->projected_px, frame.to_px, mask);
 }
 
+LightShare::Hand HandPipeline::shared(const HandFrame& frame) const {
+  const Skinned& skinned = *frame.skinned;
+  return {skinned.position_m, skinned.normal, skinned.light};
+}
+
 DrawnHand HandPipeline::drawn(const Skinned& skinned,
                               std::span<const glm::vec2> position_px) const {
   return {&states_.shape.surface.mesh(),
           worn_.texels != nullptr ? worn_ : picture_.view(),
           position_px,
-          skinned.depth_m,
+          skinned.distance_m,
           skinned.light,
           mesh_revision_,
           picture_revision_};

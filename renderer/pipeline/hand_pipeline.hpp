@@ -8,6 +8,7 @@
 #include "config/sections/cascade.hpp"
 #include "config/sections/content.hpp"
 #include "config/sections/projector.hpp"
+#include "renderer/blend/light_share.hpp"
 #include "renderer/correct/finger_outline.hpp"
 #include "renderer/correct/foldover_repair.hpp"
 #include "renderer/correct/palm_outline.hpp"
@@ -141,8 +142,10 @@ class HandPipeline {
   /// Step register: corrects the landmarks by the motion that the newest image shows.
   void register_motion(HandFrame& frame, LateRegistration& late, std::int64_t target_ns);
 
-  /// Step skin: poses the mesh. `shading`: see HandSurface::pose().
-  void skin(HandFrame& frame, float shading);
+  /// Step skin: poses the mesh. `shading` and `is_shared`: see HandSurface::pose().
+  void skin(HandFrame& frame, float shading, bool is_shared = false);
+  /// The posed hand, whose light is to be shared.
+  LightShare::Hand shared(const HandFrame& frame) const;
   /// Step correct: moves the projected vertices from P onto Q̂ by the model of the frame's rung.
   /// Returns the number of triangles that remain turned over.
   int correct(HandFrame& frame);

@@ -20,6 +20,11 @@ LandmarkOracle of_side(const Pipeline::Oracle& oracle, Side side) {
   return [oracle, side](std::int64_t time_ns) { return oracle(side, time_ns); };
 }
 
+/// Up to this angle between camera and projector, the hand's outline in the camera's image is about
+/// that in the projector's. From the side it is another one, and would leave skin dark and light
+/// the wall (docs/lab/experiments.md, "The mask from the side").
+constexpr double kMostAside_deg = 12;
+
 /// True if an origin is implausibly later than the arrival. Such a message would make all messages
 /// until its origin count as older.
 bool is_early(std::int64_t now_ns, std::int64_t origin_ns) {
@@ -53,7 +58,7 @@ Result<std::unique_ptr<Pipeline>> Pipeline::create(
 
 Pipeline::Passed::Passed() {
   const auto reserve = [](std::size_t most, auto&... all) { (all.reserve(most), ...); };
-  reserve(msg::kMaxHands, hands, sought, moved, late, drawn, described);
+  reserve(msg::kMaxHands, hands, sought, moved, late, drawn, described, shared);
   reserve(MovingLeastSquares::kMost, grid_from_px, grid_to_px);
 }
 
@@ -65,9 +70,12 @@ Pipeline::Pipeline(const config::Cascade& settings, const config::Content& conte
       shading_(static_cast<float>(content.shading)),
       screen_{0, 0, calibration.projector.width_px, calibration.projector.height_px},
       both_{std::move(left), std::move(right)},
+      is_aside_(calibration.degrees_apart() > kMostAside_deg),
       mask_(settings.mask, calibration, content.smooth),
       late_(registration_of(settings), settings.filter, calibration),
-      painter_(std::move(painter), settings.fill, screen_.x1, screen_.y1) {}
+      painter_(std::move(painter), settings.fill, screen_.x1, screen_.y1) {
+  if (calibration.projector2) share_.emplace(calibration);
+}
 
 void Pipeline::adjust(const config::Cascade& cascade, const config::Content& content) {
   settings_ = cascade;
@@ -156,9 +164,12 @@ Pipeline::Placed Pipeline::place(std::int64_t now_ns, std::int64_t target_ns,
   const auto was_sought = [](const HandInFrame& now, const HandMask::Sought& then) {
     return now.hand->side() == then.side;
   };
-  Placed placed{.is_masked = is_seen && std::ranges::equal(hands, passed_.sought, was_sought)};
+  Placed placed{.is_masked =
+                    is_seen && !is_aside_ && std::ranges::equal(hands, passed_.sought, was_sought)};
   if (!is_drawn && !placed.is_masked) return placed;
-  for (auto& [hand, frame] : hands) hand->skin(frame, is_drawn ? shading_ : 0);
+  const bool is_shared = is_drawn && share_;
+  for (auto& [hand, frame] : hands) hand->skin(frame, is_drawn ? shading_ : 0, is_shared);
+  if (is_shared) share_light();
   stages_.mark(Stage::skin);
   // If nothing is drawn, nothing is warped: the outline is learned from corrected vertices.
   placed.foldovers = correct(is_drawn ? settings_.correct.method : config::CorrectMethod::vertices);
@@ -266,6 +277,12 @@ void Pipeline::learn_outline(std::int64_t target_ns) {
       const auto& [hand, frame] = passed_.hands[h];
       hand->learn_outline(frame, target_ns, mask_.in_projector());
     }
+}
+
+void Pipeline::share_light() {
+  passed_.shared.clear();
+  for (const auto& [hand, frame] : passed_.hands) passed_.shared.push_back(hand->shared(frame));
+  share_->apply(passed_.shared, beside_);
 }
 
 Rect Pipeline::projected_bounds() const {

@@ -79,7 +79,7 @@ class Pipeline {
   /// Loads both hands and their contents. `painter`: draws the frames; it is for images of the
   /// projector's size. If it stops (Painter::failure()), and without one, cpu draws. Errors
   /// (bad_config): a hand file or a content cannot be loaded; the filter is "ideal" and there is no
-  /// oracle.
+  /// oracle. If the calibration has a second projector, the light is shared with it.
   static Result<std::unique_ptr<Pipeline>> create(const config::Cascade& cascade,
                                                   const config::Content& content,
                                                   const config::Hand& hand,
@@ -112,6 +112,9 @@ class Pipeline {
 
   /// Keeps these rectangles dark from now on, whatever is drawn; projector px.
   void keep_dark(std::vector<Rect> areas) { painter_.keep_dark(std::move(areas)); }
+
+  /// What is on of a second projector's light from now on, 0..1 (LightShare::apply()); 1 at first.
+  void set_beside(float share) { beside_ = share; }
 
   /// Draws the frame whose photons arrive at `target_ns`. `camera`: the newest image, or none; an
   /// image more than 50 ms later than `now_ns` is ignored. Without hands the frame is dark and its
@@ -162,6 +165,7 @@ class Pipeline {
     std::vector<glm::vec2> grid_from_px, grid_to_px;  ///< control points of the grid
     std::vector<DrawnHand> drawn;
     std::vector<FrameHand> described;
+    std::vector<LightShare::Hand> shared;
   };
 
   Pipeline(const config::Cascade& settings, const config::Content& content,
@@ -176,6 +180,7 @@ class Pipeline {
   int correct_by_grid();
   Rect advance_masks();
   void learn_outline(std::int64_t target_ns);
+  void share_light();
   FrameDrawing drawing_of(const Placed& placed);
   std::uint32_t rungs() const;
   Rect on_screen(const Rect& region) const { return region.within(screen_.x1, screen_.y1); }
@@ -188,8 +193,11 @@ class Pipeline {
   Rect screen_;
   HandSides sides_;
   std::array<HandPipeline, 2> both_;  ///< left, right
+  bool is_aside_;                     ///< the mask in the camera's image is none for the projector
   HandMask mask_;
   LateRegistration late_;
+  std::optional<LightShare> share_;  ///< empty if there is one projector
+  float beside_ = 1;
   FramePainter painter_;
   StageClock stages_;
   msg::MadeFrom newest_;   ///< the newest messages, and the image of the last frame

@@ -44,16 +44,18 @@ std::vector<std::uint16_t> vertices_of(const HandMesh& mesh) {
 }
 
 /// `position`: xyz xyz ...; `m`: column-major, 3 rows and 4 columns, from camera space to
-/// homogeneous projector px; `px`: xy xy ...
+/// homogeneous projector px, whose third row is the distance along the projector's axis; `px`: xy
+/// xy ...
 HANDCAST_CLONES void project_all(const float* position, int count, const float* m, float nearest,
-                                 float* px, float* depth) {
+                                 float* px, float* depth, float* distance) {
   for (int v = 0; v < count; ++v) {
     const float x = position[3 * v], y = position[3 * v + 1],
                 z = position[3 * v + 2] < nearest ? nearest : position[3 * v + 2];
-    const float scale = 1.0f / (m[2] * x + m[5] * y + m[8] * z + m[11]);
+    const float away = m[2] * x + m[5] * y + m[8] * z + m[11], scale = 1.0f / away;
     px[2 * v] = (m[0] * x + m[3] * y + m[6] * z + m[9]) * scale;
     px[2 * v + 1] = (m[1] * x + m[4] * y + m[7] * z + m[10]) * scale;
     depth[v] = z;
+    distance[v] = away;
   }
 }
 
@@ -79,25 +81,34 @@ HandSurface::HandSurface(HandMesh mesh, double forearm_mm)
       seen_px_(mesh_.vertex_count()),
       landings_px_(mesh_.vertex_count()),
       depth_m_(mesh_.vertex_count()),
+      distance_m_(mesh_.vertex_count()),
       light_(mesh_.vertex_count()) {}
 
 Skinned HandSurface::pose(const msg::HandPose& pose, const config::Skin& settings,
-                          const calib::Calibration& calibration, float shading, float presence) {
+                          const calib::Calibration& calibration, float shading, float presence,
+                          bool is_shared) {
   JointFrames frames = settings.fit ? bone_fit_(frames_of(pose)) : frames_of(pose);
   const glm::mat4 camera_from_tracker(calibration.camera_from_tracker);
   for (glm::mat4& frame : frames) frame = camera_from_tracker * frame;
   const bool shaded = shading > 0;
-  const bool lit_fully = !shaded && presence >= 1;
-  skin(mesh_, frames, positions_m_, shaded ? std::span(normals_) : std::span<glm::vec3>());
+  const bool lit_fully = !shaded && presence >= 1 && !is_shared;
+  const auto normals = shaded || is_shared ? std::span(normals_) : std::span<glm::vec3>();
+  skin(mesh_, frames, positions_m_, normals);
 
   const glm::mat4x3 projector_from_space(calibration.projection());
   const int count = static_cast<int>(mesh_.vertex_count());
   project_all(&positions_m_[0].x, count, &projector_from_space[0][0], kNearestVertex_m,
-              &seen_px_[0].x, depth_m_.data());
+              &seen_px_[0].x, depth_m_.data(), distance_m_.data());
   if (shaded) shade_all(&normals_[0].x, count, shading, presence, light_.data());
   if (!shaded) std::fill(light_.begin(), light_.end(), presence);
   std::copy(seen_px_.begin(), seen_px_.end(), landings_px_.begin());
-  return {seen_px_, landings_px_, depth_m_, lit_fully ? std::span<const float>() : light_,
+  return {seen_px_,
+          landings_px_,
+          depth_m_,
+          distance_m_,
+          lit_fully ? std::span<float>() : light_,
+          positions_m_,
+          normals,
           glm::determinant(calibration.projector.from_camera * calibration.camera.matrix()) > 0
               ? -1.0f
               : 1.0f};

@@ -22,7 +22,12 @@ struct Skinned {
   std::span<const glm::vec2> seen_px;  ///< projector px, in the pose that was skinned
   std::span<glm::vec2> projected_px;   ///< the same; to be moved by the step "correct"
   std::span<const float> depth_m;      ///< distance along the camera's axis
-  std::span<const float> light;        ///< factor of the levels, 0..1; empty: 1 everywhere
+  std::span<const float> distance_m;   ///< distance along the projector's axis
+  std::span<float> light;              ///< factor of the levels, 0..1; empty: 1 everywhere
+  /// In camera space; `normal` has unit length, and is empty unless it was asked for.
+  /// @{
+  std::span<const glm::vec3> position_m, normal;
+  /// @}
   /// Sign of the area (projector px, y down) of a triangle that faces the camera.
   float facing_sign = -1;
 };
@@ -42,9 +47,11 @@ class HandSurface {
 
   /// Skins the mesh and projects it through the camera to the projector. `shading`: share of
   /// Lambert's law in the light, 0..1, of a light that shines along the camera's axis. `presence`:
-  /// factor of all levels, 0..1, so that a fade looks even.
+  /// factor of all levels, 0..1, so that a fade looks even. `is_shared`: normals are needed, and
+  /// the light is not empty.
   Skinned pose(const msg::HandPose& pose, const config::Skin& settings,
-               const calib::Calibration& calibration, float shading, float presence = 1);
+               const calib::Calibration& calibration, float shading, float presence = 1,
+               bool is_shared = false);
 
   /// Learns the widths of the fingers from the projected vertices of the last pose(), after
   /// correction, and the landmarks and the mask at the same time, `time_ns`. All in projector px.
@@ -62,7 +69,7 @@ class HandSurface {
   std::vector<std::uint16_t> drawn_vertices_;
   std::vector<glm::vec3> positions_m_, normals_;
   std::vector<glm::vec2> seen_px_, landings_px_;
-  std::vector<float> depth_m_, light_;
+  std::vector<float> depth_m_, distance_m_, light_;
 };
 
 }  // namespace handcast::renderer

@@ -15,6 +15,7 @@ CHAPTERS = (
     Chapter("Begin", ("docs/tour.md", "docs/recipes.md", "docs/operating/trouble.md", "README.md")),
     Chapter("Artists", ("docs/operating/artist.md", "docs/operating/content.md", "docs/operating/desk.md")),
     Chapter("Technicians", ("docs/operating.md", "docs/operating/technician.md", "docs/operating/night-watch.md", "docs/operating/two-computers.md",
+                            "docs/operating/two-projectors.md",
                             "docs/operating/cameras.md", "docs/operating/trackers.md", "docs/operating/light.md",
                             "docs/operating/questions.md", "docs/operating/figures.md")),
     Chapter("Researchers", ("docs/results.md", "docs/method.md", "docs/studies.md", "docs/benchmark.md",

@@ -17,9 +17,8 @@ static constexpr std::array kBackends{
                      .sentence = "Models a projector: takes frames at its rate, shows none.",
                      .open = open_twin},
     ProjectorBackend{.name = "file",
-                     .sentence = "Writes the light to light/ in the folder of `up --out`, or in "
-                                 "the current folder: as PNG pictures, of which it keeps 100, or "
-                                 "as a film.",
+                     .sentence = "Writes the light to a folder: as PNG pictures, of which it keeps "
+                                 "100, or as a film.",
                      .open = open_file},
 #ifdef HANDCAST_WITH_WINDOW
     ProjectorBackend{.name = "window",

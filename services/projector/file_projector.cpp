@@ -231,7 +231,7 @@ class FileProjector final : public Projector {
 }  // namespace
 
 Result<std::unique_ptr<Projector>> open_file(const config::Rig& rig, const calib::Calibration&) {
-  const fs::path folder = daemon::out_folder().value_or(".") / "light";
+  const fs::path folder = daemon::out_folder().value_or(".") / rig.projector.file.folder;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)

@@ -27,10 +27,11 @@ inline glm::dmat3 placement(const config::Light& light, int width_px, int height
 /// What people change in the light while it is on. One thread.
 class LiveLight {
  public:
-  /// All must outlive the object. `rig`: what the others were made with.
-  LiveLight(service::LiveSettings& live, const config::Rig& rig, renderer::Pipeline& pipeline,
-            Brightness& brightness, int width_px, int height_px)
+  /// All must outlive the object. `rig`: what the others were made with. `at`: of this projector.
+  LiveLight(service::LiveSettings& live, const config::Rig& rig, config::Viewpoint at,
+            renderer::Pipeline& pipeline, Brightness& brightness, int width_px, int height_px)
       : live_(live),
+        at_(at),
         pipeline_(pipeline),
         brightness_(brightness),
         width_px_(width_px),
@@ -43,7 +44,7 @@ class LiveLight {
   bool follow(std::int64_t now_ns) {
     const auto changed = live_.take();
     if (!changed) return false;
-    const auto& rig = changed->rig;
+    const auto rig = config::rig_at_projector(changed->rig, at_);
     settings_ = rig.projector;
     brightness_.adjust(rig.projector, rig.light, now_ns);
     pipeline_.adjust(rig.cascade, rig.content);
@@ -68,6 +69,7 @@ class LiveLight {
   }
 
   service::LiveSettings& live_;
+  config::Viewpoint at_;
   renderer::Pipeline& pipeline_;
   Brightness& brightness_;
   int width_px_, height_px_;

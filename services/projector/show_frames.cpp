@@ -9,7 +9,7 @@ namespace handcast::projector {
 
 void show_frames(service::Context& context, Show show) {
   using namespace std::chrono_literals;
-  auto settings = context.rig().projector;
+  auto& settings = show.settings;
   Pacer pacer(settings.rate_hz);
   Horizon horizon(settings);
   LastLight last_light(context, show.brightness);
@@ -22,7 +22,7 @@ void show_frames(service::Context& context, Show show) {
   for (std::uint64_t frame_id = 0; sleep_while(running, next_ns); ++frame_id) {
     if (show.live.follow(now_ns())) settings = *show.live.settings();
     const auto image_deadline = Deadline::at_ns(now_ns() + ms_to_ns(settings.frame_wait_ms));
-    if (const auto delivered = show.inputs.deliver(show.pipeline, image_deadline); !delivered)
+    if (const auto delivered = show.take_inputs(image_deadline); !delivered)
       context.tolerate(delivered.error());
 
     const std::int64_t begin_ns = now_ns();

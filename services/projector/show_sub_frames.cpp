@@ -14,9 +14,9 @@
 namespace handcast::projector {
 namespace {
 
-std::unique_ptr<renderer::Packer> packer_for(const service::Context& context,
+std::unique_ptr<renderer::Packer> packer_for(const calib::Calibration& calibration,
                                              const config::Projector& settings) {
-  const auto output = calib::output_of(context.calibration(), context.rig().projector.packing);
+  const auto output = calib::output_of(calibration, settings.packing);
   return renderer::make_packer(settings, output.projector.width_px, output.projector.height_px);
 }
 
@@ -35,8 +35,8 @@ class SubFrameLoop {
       : context_(context),
         show_(std::move(show)),
         last_light_(context, show_.brightness),
-        packer_(packer_for(context, context.rig().projector)),
-        plan_(context.rig().projector),
+        packer_(packer_for(show_.calibration, show_.settings)),
+        plan_(show_.settings),
         messages_(std::move(show_.projections),
                   [&context](const auto& header, auto stages, const auto& made_from) {
                     context.mark(header, stages, made_from);
@@ -51,7 +51,8 @@ class SubFrameLoop {
   /// Draws the sub-frames. False if the service ends.
   bool draw_all() {
     plan_.start(now_ns());
-    if (show_.live.follow(now_ns())) packer_ = packer_for(context_, *show_.live.settings());
+    if (show_.live.follow(now_ns()))
+      packer_ = packer_for(show_.calibration, *show_.live.settings());
     packer_->begin(show_.brightness.fade_at(now_ns()));
     renderer::Frame frame;
     while (const auto next = plan_.next(now_ns())) {
@@ -68,7 +69,7 @@ class SubFrameLoop {
   }
 
   renderer::Frame draw(const SubFramePlan::Drawing& drawing) {
-    if (const auto delivered = show_.inputs.deliver(show_.pipeline, Deadline::now()); !delivered)
+    if (const auto delivered = show_.take_inputs(Deadline::now()); !delivered)
       context_.tolerate(delivered.error());
     const std::int64_t begin_ns = now_ns();
     const auto* picture = show_.test_pictures.at(begin_ns, drawing.target_ns, show_.live.flip());
@@ -115,7 +116,7 @@ class SubFrameLoop {
       if (time_ns < due_ns) return true;
     }
   }
-  int sub_frames() const { return config::sub_frames_of(context_.rig().projector.packing); }
+  int sub_frames() const { return config::sub_frames_of(show_.settings.packing); }
 
   const renderer::LightTable unchanged_ = unchanged();
 

@@ -96,7 +96,8 @@ const MessageType* type_of_stream(std::string_view stream) {
   if (stream == "pose.hands") return &type_of<msg::HandPoses>();
   if (stream == "landmarks.hands" || stream == "landmarks2.hands")
     return &type_of<msg::Landmarks>();
-  if (stream == "projection.frames") return &type_of<msg::Projection>();
+  if (stream == "projection.frames" || stream == "projection2.frames")
+    return &type_of<msg::Projection>();
   if (stream.starts_with("marks.")) return &type_of<msg::StageMarks>();
   return nullptr;
 }

@@ -24,7 +24,7 @@ calib::Calibration stand_in() {
 }
 
 Result<calib::Calibration> load_calibration(const config::Rig& rig) {
-  return calib::load_calibration(rig.calibration, rig.projector.packing);
+  return calib::load_calibration(rig.calibration, rig.projector, rig.projector2);
 }
 
 int serve(const Instance& instance, const Options& options) try {

@@ -25,7 +25,8 @@ constexpr std::array kSensors{
     Sensor{"pose.hands", "pose", "the tracker has sent no sample"},
     Sensor{"landmarks.hands", "landmarks", "the detector has searched no image"},
     Sensor{"landmarks2.hands", "landmarks2", "the second detector has searched no image"},
-    Sensor{"projection.frames", "projector", "the projector has shown no frame"}};
+    Sensor{"projection.frames", "projector", "the projector has shown no frame"},
+    Sensor{"projection2.frames", "projector2", "the second projector has shown no frame"}};
 
 std::string because(const std::string& reason) { return reason.empty() ? "" : ": " + reason; }
 

@@ -97,9 +97,8 @@ std::string print_backends(const Catalogue& catalogue) {
   for (const auto& [name, service] : catalogue) {
     if (service.backends.empty()) continue;
     if (const auto first = config::name_at_first(name); !first.empty()) {
-      page += fmt::format(
-          "\n## {}\n\n{}\nThe back ends of {}, which read the settings of the second camera.\n",
-          name, service.summary, first);
+      page += fmt::format("\n## {}\n\n{}\nThe back ends of {}, which read the settings of [{}].\n",
+                          name, service.summary, first, name);
       continue;
     }
     page += fmt::format("\n## {}\n\n{}\n\n| back end | | reads | |\n|---|---|---|---|\n", name,

@@ -23,7 +23,8 @@ namespace {
 using Paths = std::vector<std::string>;
 
 /// Files that may change under their names: their content counts, too.
-const Paths kFiles{"calibration", "hand.left", "hand.right", "content.left", "content.right"};
+const Paths kFiles{"calibration", "projector2.calibration", "hand.left",
+                   "hand.right",  "content.left",           "content.right"};
 
 /// What only the supervisor reads.
 bool is_the_supervisors(std::string_view service, std::string_view path) {

@@ -46,6 +46,12 @@ ipc::RingSpec images(std::string_view stream, int slots) {
       msg::CameraFrame::bytes(msg::kLargestCameraWidth_px, msg::kLargestCameraHeight_px));
 }
 
+ipc::RingSpec projections(const char* stream) {
+  return ipc::RingSpec::of<msg::Projection>(
+      stream, kImageSlots, kNewestOnly,
+      msg::Projection::bytes(msg::kLargestProjectorWidth_px, msg::kLargestProjectorHeight_px));
+}
+
 std::vector<ipc::RingSpec> all_streams() {
   using ipc::RingSpec;
   return {
@@ -54,9 +60,8 @@ std::vector<ipc::RingSpec> all_streams() {
       RingSpec::of<msg::HandPoses>("pose.hands", 64, kWithHistory),
       RingSpec::of<msg::Landmarks>("landmarks.hands", 32, kWithHistory),
       RingSpec::of<msg::Landmarks>("landmarks2.hands", 32, kWithHistory),
-      RingSpec::of<msg::Projection>(
-          "projection.frames", kImageSlots, kNewestOnly,
-          msg::Projection::bytes(msg::kLargestProjectorWidth_px, msg::kLargestProjectorHeight_px)),
+      projections("projection.frames"),
+      projections("projection2.frames"),
       RingSpec::of<msg::TestPicture>(std::string(msg::kTestPictures), kPictureSlots, kNewestOnly,
                                      msg::TestPicture::bytes(msg::kLargestTestPictureWidth_px,
                                                              msg::kLargestTestPictureHeight_px)),
@@ -98,6 +103,19 @@ void add_second_view(const config::Rig& rig, std::vector<ServiceSpec>& services)
                         .backend = rig.landmarks2.backend,
                         .needs = {has_camera ? "camera2" : "camera"},
                         .instance_of = "landmarks"});
+}
+
+/// A second projector, which lights the same hands.
+void add_second_projector(const config::Rig& rig, std::vector<ServiceSpec>& services) {
+  const auto& second = rig.projector2;
+  if (second.backend == "none") return;
+  services.push_back({.name = "projector2",
+                      .stream = "projection2.frames",
+                      .backend = second.backend,
+                      .wanted_hz = second.rate_hz,
+                      .needs = {"camera", "pose", "landmarks"},
+                      .counts_sub_frames = second.packing != config::Packing::none,
+                      .instance_of = "projector"});
 }
 
 /// The programs of other people, after the services that they feed.
@@ -145,6 +163,7 @@ std::vector<ServiceSpec> services_of(const config::Rig& rig, const Catalogue& ca
                       "",
                       {"camera", "pose", "landmarks"}});
   services.back().counts_sub_frames = rig.projector.packing != config::Packing::none;
+  add_second_projector(rig, services);
   services.push_back({"content", "content.left", "", 0});
   services.back().message_bytes =
       msg::ContentPicture::bytes(rig.content.width_px, rig.content.height_px);

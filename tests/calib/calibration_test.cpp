@@ -61,6 +61,38 @@ TEST(Calibration, ItsProjectionAndHomographiesAgree) {
   EXPECT_LT(glm::distance(glm::dvec2(mapped) / mapped.z, expected), 1e-9);
 }
 
+TEST(Calibration, ItsProjectionHasTheDistanceAlongTheProjectorsAxis) {
+  auto rig = rig_with_projector_beside();
+  // A projector 0.15 m to the right that looks as the camera does is as far from everything.
+  rig.projector.from_camera[0].z = rig.projector.from_camera[1].z = 0;
+  rig.projector.from_camera[2].z = 1;
+  rig.projector.parallax.z = 0;
+  for (const double scale : {1.0, -3.0}) {
+    auto other = rig;
+    other.projector.from_camera *= scale;
+    other.projector.parallax *= scale;
+    EXPECT_NEAR((other.projection() * glm::dvec4(0.05, -0.08, 0.55, 1)).z, 0.55, 1e-9);
+  }
+}
+
+TEST(Calibration, TheProjectorIsSeenAtAnAngleToTheCamera) {
+  EXPECT_NEAR(reference_rig().degrees_apart(), 0, 1e-3);
+  EXPECT_NEAR(rig_with_projector_beside().degrees_apart(), 12.2, 0.1);
+  EXPECT_NEAR(load_calibration("config/calibrations/left_of_two.toml")->degrees_apart(), 30, 0.5);
+}
+
+TEST(Calibration, EachOfTwoProjectorsHasItsOwnFirst) {
+  auto rig = reference_rig();
+  rig.projector_device = "left";
+  rig.projector2 = SecondProjector{"right", rig_with_projector_beside().projector};
+  EXPECT_EQ(at_projector(rig, config::Viewpoint::first).projector_device, "left");
+  const auto second = at_projector(rig, config::Viewpoint::second);
+  EXPECT_EQ(second.projector_device, "right");
+  EXPECT_EQ(second.projector.parallax, rig.projector2->model.parallax);
+  EXPECT_EQ(second.projector2->model.parallax, glm::dvec3(0));
+  EXPECT_EQ(second.id, rig.id) << "they see the same images";
+}
+
 TEST(Calibration, MillimetresPerPixelGrowWithTheDistance) {
   const auto rig = reference_rig();
   EXPECT_NEAR(rig.mm_per_projector_px(0.5), 500 / 1162.2776 * 720 / 1024, 1e-6);

@@ -44,6 +44,41 @@ TEST(SubFrames, TheOutputIsWhatTheCalibrationFileSays) {
   }
 }
 
+TEST(TwoProjectors, TheSecondOneIsThatOfItsFile) {
+  config::SecondProjector second;
+  second.calibration = "config/calibrations/right_of_two.toml";
+  const std::string first = "config/calibrations/left_of_two.toml";
+  EXPECT_FALSE(load_calibration(first, {}, second)->projector2) << "it has no back end";
+  second.backend = "twin";
+  const auto both = load_calibration(first, {}, second);
+  ASSERT_TRUE(both) << both.error().what;
+  EXPECT_EQ(both->projector2->model.parallax,
+            load_calibration(second.calibration)->projector.parallax);
+  EXPECT_EQ(both->id, load_calibration(first)->id);
+  second.packing = Packing::quadrants_4;
+  EXPECT_EQ(load_calibration(first, {}, second)->projector2->model.width_px, 512);
+}
+
+TEST(TwoProjectors, TheSecondOneMustBeMeasuredWithTheSameCamera) {
+  config::SecondProjector second;
+  second.backend = "twin";
+  const auto what = [&](const std::filesystem::path& first) {
+    const auto both = load_calibration(first, {}, second);
+    return both ? "" : both.error().what;
+  };
+  EXPECT_THAT(what(""), testing::HasSubstr("projector2.calibration is empty"));
+  second.calibration = "/nowhere.toml";
+  EXPECT_THAT(what(""), testing::HasSubstr("projector2.calibration: "));
+  test::Scratch scratch;
+  auto other = reference_rig();
+  other.camera.fx_px += 1;
+  const auto file = scratch.path() / "other.toml";
+  ASSERT_TRUE(write_whole(file, print_calibration(other)));
+  second.calibration = file;
+  EXPECT_THAT(what(""), testing::HasSubstr("another lens"));
+  EXPECT_EQ(what(file), "");
+}
+
 TEST(SubFrames, HaveTheIdOfTheirCalibration) {
   EXPECT_EQ(load_calibration("", Packing::quadrants_4)->id, load_calibration("")->id);
 }

@@ -368,6 +368,10 @@ TEST(Viewpoint, TheSecondOneHasNamesOfItsOwnForWhatIsItsOwn) {
   EXPECT_EQ(name_at(Viewpoint::first, "camera.frames"), "camera.frames");
   EXPECT_EQ(name_at_first("landmarks2.models"), "landmarks.models");
   EXPECT_EQ(name_at_first("camera2"), "camera");
+  EXPECT_EQ(name_at_projector(Viewpoint::second, "projector.kms.card"), "projector2.kms.card");
+  EXPECT_EQ(name_at_projector(Viewpoint::second, "projection.frames"), "projection2.frames");
+  EXPECT_EQ(name_at_projector(Viewpoint::second, "camera.frames"), "camera.frames");
+  EXPECT_EQ(name_at_first("projector2.rate_hz"), "projector.rate_hz");
   EXPECT_EQ(name_at_first("camera.frames"), "");
   EXPECT_EQ(name_at_first("pose.hands"), "");
 }
@@ -380,6 +384,9 @@ TEST(Viewpoint, EachHasSectionsOfItsOwn) {
   EXPECT_EQ(camera_at(rig, Viewpoint::second).rate_hz, 100);
   EXPECT_EQ(landmarks_at(rig, Viewpoint::first).hands, 2);
   EXPECT_EQ(landmarks_at(rig, Viewpoint::second).hands, 1);
+  rig.projector2.rate_hz = 120;
+  EXPECT_EQ(rig_at_projector(rig, Viewpoint::first).projector.rate_hz, rig.projector.rate_hz);
+  EXPECT_EQ(rig_at_projector(rig, Viewpoint::second).projector.rate_hz, 120);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "renderer/media/picture.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "tests/system/running_rig.hpp"
+#include "tests/system/variable.hpp"
 
 namespace handcast::system_test {
 namespace {
@@ -33,6 +34,12 @@ class Watch : public SystemTest {
     const auto before = text_of(now - 6 * 3600), after = text_of(now + 6 * 3600);
     return is_open ? fmt::format("daily {}-{}", before, after)
                    : fmt::format("daily {}-{}", after, before);
+  }
+  static std::string date_of_today() {
+    const auto now = std::time(nullptr);
+    std::tm local{};
+    ::localtime_r(&now, &local);
+    return fmt::format("{:04}-{:02}-{:02}", local.tm_year + 1900, local.tm_mon + 1, local.tm_mday);
   }
   void write_rig(bool is_open) const {
     std::ofstream(rig_file()) << fmt::format(
@@ -136,6 +143,34 @@ TEST_F(Watch, ARigThatIsStartedOutsideItsHoursIsDark) {
   EXPECT_TRUE(eventually([&] { return blackout().find("= true") != std::string::npos; }));
   EXPECT_TRUE(becomes(false));
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
+}
+
+/// A computer without a battery boots in another year, at another time of day, until it hears of
+/// the time.
+TEST_F(Watch, AClockThatIsSetAfterTheBootTurnsTheLightOn) {
+#ifdef HANDCAST_WITH_SANITIZER
+  GTEST_SKIP() << "a sanitizer must be loaded before the library that lets the clock jump";
+#endif
+  const auto file = (scratch_.path() / "clock").string();
+  const auto jump_by = [&](std::int64_t seconds) {
+    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary)
+        .write(reinterpret_cast<const char*>(&seconds), sizeof seconds);
+  };
+  std::ofstream(file) << std::string(sizeof(std::int64_t), '\0');
+  constexpr std::int64_t kDay_s = 86'400;
+  jump_by(-9 * 365 * kDay_s - kDay_s / 2);
+  const Variable jump("HANDCAST_CLOCK_JUMP", file), preload("LD_PRELOAD", JUMPING_CLOCK);
+  const auto rig = up_watched(true);
+  ASSERT_TRUE(eventually([&] { return blackout().find("= true") != std::string::npos; }))
+      << rig->log();
+  jump_by(0);
+  EXPECT_TRUE(eventually([&] { return blackout().find("= false") != std::string::npos; }))
+      << rig->log();
+  expect_more_light();
+  EXPECT_TRUE(eventually([&] { return in_scratch("transitions") == "closed\nopen\n"; }));
+  EXPECT_EQ(handcast({"down"}).exit_code, 0);
+  const auto day = nlohmann::json::parse(std::ifstream(folder() / (date_of_today() + ".json")));
+  EXPECT_LT(day["up_s"], 600) << "the years between were no time of this rig";
 }
 
 TEST_F(Watch, AServiceThatIsGivenUpIsOneAlertOneRecoveryAndOneBlackBoxWithoutImages) {

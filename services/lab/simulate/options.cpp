@@ -64,8 +64,10 @@ Result<Options> parse(int argc, const char* const* argv) {
            "Draws nothing and scores only the 21 landmarks, which takes a few per cent of the "
            "time");
   line.add("--json FILE", options.json_file, "Writes the metrics");
-  line.add("--frames DIR", options.frames_directory,
-           "Writes pictures of the true hand with the light on it");
+  line.add(
+      "--frames DIR", options.frames_directory,
+      "Writes pictures of the true hand with the light on it; with two projectors, that of the "
+      "first, of the second, and of both");
   line.add("--picture-every N", options.picture_every, "Writes a picture of every N-th drawn frame",
            {1, 100000});
   line.add("--trace FILE.csv", options.trace_file,

@@ -101,6 +101,20 @@ void print_summary(const nlohmann::json& json, const config::Rig& rig, const Opt
       text("/frame_us/p50", "{:.0f} us"));
 }
 
+/// What both projectors of a rig do together.
+void print_shared(const nlohmann::json& json) {
+  if (!json["shared"].is_object()) return;
+  const auto text = [&](const char* pointer, const char* form) {
+    return text_of(json["shared"], pointer, form);
+  };
+  fmt::print(
+      "both projectors: coverage {} (the first alone {}), light {} (p5) to {} (p95), step between "
+      "neighbours {} (p99), apart {} (mean)\n",
+      text("/coverage", "{:.3f}"), text("/coverage_first", "{:.3f}"), text("/light/p5", "{:.2f}"),
+      text("/light/p95", "{:.2f}"), text("/step/p99", "{:.2f}"),
+      text("/apart_mm/mean", "{:.1f} mm"));
+}
+
 /// Why the metrics say nothing about the rig. Empty if they do.
 std::string fault_of(const nlohmann::json& json, const Options& options) {
   if (auto why = why_nothing_was_scored(json, options); !why.empty() || options.draw_every == 0)
@@ -119,7 +133,8 @@ Result<std::string> run(const Options& options) {
       return tl::make_unexpected(writable.error());
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());
-  const auto calibration = calib::load_calibration(rig->calibration, rig->projector.packing);
+  const auto calibration =
+      calib::load_calibration(rig->calibration, rig->projector, rig->projector2);
   if (!calibration) return tl::make_unexpected(calibration.error());
 
   const auto json = score_in_sight(*rig, *calibration, options);
@@ -128,6 +143,7 @@ Result<std::string> run(const Options& options) {
   for (const auto& [what, file] :
        {std::pair{"poses", options.poses_file}, std::pair{"landmarks", options.landmarks_file}})
     if (!file.empty()) fmt::print("the {} were those of {}\n", what, file);
+  print_shared(*json);
   print_detector((*json)["detector"]);
   if (!options.json_file.empty()) {
     // Paths and names in the metrics need not be UTF-8.

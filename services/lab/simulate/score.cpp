@@ -16,6 +16,7 @@
 #include "services/lab/simulate/photograph.hpp"
 #include "services/lab/simulate/recorder.hpp"
 #include "services/lab/simulate/recovery.hpp"
+#include "services/lab/simulate/second_light.hpp"
 #include "services/lab/simulate/sensor_feed.hpp"
 #include "services/lab/simulate/trace.hpp"
 #include "services/lab/twin/metrics.hpp"
@@ -75,6 +76,11 @@ class Products {
         return tl::make_unexpected(removed.error());
       products->photographer_.emplace(twin, calibration);
     }
+    if (calibration.projector2 && options.draw_every > 0) {
+      auto second = SecondLight::open(rig, calibration, options, twin);
+      if (!second) return tl::make_unexpected(second.error());
+      products->second_ = std::move(*second);
+    }
     // Last, because it empties the file.
     if (!options.trace_file.empty()) {
       auto trace = Trace::open(options.trace_file);
@@ -110,6 +116,7 @@ class Products {
     json["seconds"] = options_.seconds;
     json["hand_speed_m_s"] = hand_speed_.to_json();
     json["fault"] = simulate::to_json(fault_, moments_, clean);
+    json["shared"] = second_ ? second_->to_json() : nlohmann::json();
     json["software_ms"] = rig.projector.software_ms;
     json["motion_to_photon_ms"] =
         with_exposure_ > 0
@@ -159,6 +166,7 @@ class Products {
       motion_to_photon_ms_ += ns_to_ms(tick.display_ns - origin_ns);
       ++with_exposure_;
     }
+    if (second_) second_->judge(*tick.projection, tick.begin_ns);
     return picture(drawn_++, *tick.projection);
   }
 
@@ -176,7 +184,7 @@ class Products {
   Result<void> picture(std::int64_t frame, const msg::Projection& projection) {
     if (!photographer_ || frame % options_.picture_every != 0) return {};
     return renderer::write_png(numbered_png(options_.frames_directory, pictures_++),
-                               photographer_->take(projection));
+                               second_ ? second_->picture() : photographer_->take(projection));
   }
 
   const Options& options_;
@@ -191,6 +199,7 @@ class Products {
   std::vector<LightMoment> moments_;  ///< empty without a fault
   std::optional<Trace> trace_;
   std::optional<Photographer> photographer_;
+  std::unique_ptr<SecondLight> second_;  ///< null if the rig has one projector
   std::int64_t drawn_ = 0, with_exposure_ = 0;
   std::size_t pictures_ = 0;
   double motion_to_photon_ms_ = 0;  ///< sum over the drawn frames that have an image

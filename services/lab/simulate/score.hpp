@@ -29,10 +29,11 @@ struct VirtualRig {
 /// add to the command.
 Result<void> check_can_be_scored(const config::Rig& rig, const Options& options = {});
 
-/// Opens the parts for a rig. Errors: those of check_can_be_scored, Twin::create, Pipeline::create,
-/// open_frame_detector, read_poses and read_landmarks.
+/// Opens the parts for a rig and one of its projectors. Errors: those of check_can_be_scored,
+/// Twin::create, Pipeline::create, open_frame_detector, read_poses and read_landmarks.
 Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration,
-                                    const Options& options = {});
+                                    const Options& options = {},
+                                    config::Viewpoint projector = config::Viewpoint::first);
 
 /// Called after each projector frame with the virtual time done so far, warm-up included.
 using OnProgress = std::function<void(double done_s)>;
@@ -54,11 +55,11 @@ Result<std::vector<LightMoment>> moments_without_fault(config::Rig rig,
 /// twin::Metrics, and "rig", "motion", "mesh", "speed", "seed", "seconds", "software_ms",
 /// "motion_to_photon_ms" (from the middle of the exposure of a frame's image to the middle of its
 /// light, mean over the drawn frames; null without any), "hand_speed_m_s" (HandSpeed), "poses"
-/// (the file that they are from, or null), "fault"
-/// (Recovery) and "detector" (DetectorTally, with "backend" and "age_ms", and, if a fallback took
-/// the place of the rig's detector, "why"). A rig with a timed fault runs twice, the second time
-/// without the fault, but not if the options have results of other methods, which say nothing of
-/// that.
+/// (the file that they are from, or null), "shared" (the light of both projectors:
+/// twin::SharedJudge; null if there is one), "fault" (Recovery) and "detector" (DetectorTally, with
+/// "backend" and "age_ms", and, if a fallback took the place of the rig's detector, "why"). A rig
+/// with a timed fault runs twice, the second time without the fault, but not if the options have
+/// results of other methods, which say nothing of that.
 ///
 /// Ignores rig_file and settings of the options, which are in `rig` already. Thread-safe: calls
 /// share no state, and the figures do not depend on other calls. Errors: those of the twin, the

@@ -94,7 +94,8 @@ void Simulation::step(const std::function<void(const Tick&)>& on_tick) {
   const auto target_ns = refreshes_.display_ns(next_tick_);
   deliver(now_ns);
 
-  Tick tick{.index = next_tick_, .target_ns = target_ns, .display_ns = target_ns};
+  Tick tick{
+      .index = next_tick_, .begin_ns = now_ns, .target_ns = target_ns, .display_ns = target_ns};
   if (const auto refreshes = drawn_refreshes(next_tick_); !refreshes.empty()) {
     const auto frame = draw(now_ns, target_ns);
     tick.hands = frame.hands;

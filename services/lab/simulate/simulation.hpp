@@ -53,6 +53,7 @@ class Refreshes {
 /// One projector frame of a simulated rig. The borrowed data is valid during the callback only.
 struct Tick {
   std::int64_t index = 0;       ///< number of the projector frame
+  std::int64_t begin_ns = 0;    ///< when it begins
   std::int64_t target_ns = 0;   ///< the middle of the light for which it was computed
   std::int64_t display_ns = 0;  ///< the middle of a light that shows it: later, if it was late
   bool is_new = true;           ///< false from the second drawn refresh on that shows it

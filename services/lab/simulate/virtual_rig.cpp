@@ -77,7 +77,7 @@ Result<void> check_can_be_scored(const config::Rig& rig, const Options& options)
 }
 
 Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibration& calibration,
-                                    const Options& options) {
+                                    const Options& options, config::Viewpoint projector) {
   if (auto possible = check_can_be_scored(rig, options); !possible)
     return tl::make_unexpected(possible.error());
   auto sent = read_sent(options, calibration);
@@ -87,8 +87,8 @@ Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibra
   const auto truth = [&world = **twin](renderer::Side side, std::int64_t time_ns) {
     return world.landmarks(side, time_ns);
   };
-  auto pipeline =
-      renderer::Pipeline::create(rig.cascade, rig.content, rig.hand, calibration, truth);
+  auto pipeline = renderer::Pipeline::create(rig.cascade, rig.content, rig.hand,
+                                             calib::at_projector(calibration, projector), truth);
   if (!pipeline) return tl::make_unexpected(pipeline.error());
   // With landmarks of a file no detector runs.
   auto detector = sent->landmarks

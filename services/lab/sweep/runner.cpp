@@ -117,7 +117,8 @@ simulate::Options options_of(const Plan& plan, const Run& run, const config::Rig
 Result<nlohmann::json> score(const Plan& plan, const Run& run, const std::string& record) try {
   const auto rig = rig_of(plan, run);
   if (!rig) return tl::make_unexpected(rig.error());
-  const auto calibration = calib::load_calibration(rig->calibration, rig->projector.packing);
+  const auto calibration =
+      calib::load_calibration(rig->calibration, rig->projector, rig->projector2);
   if (!calibration) return tl::make_unexpected(calibration.error());
   const auto options = options_of(plan, run, *rig, record);
   auto metrics = simulate::score(*rig, *calibration, options);

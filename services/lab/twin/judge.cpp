@@ -9,7 +9,7 @@
 
 #include "ipc/msg/projection.hpp"
 #include "renderer/base/image.hpp"
-#include "renderer/base/srgb.hpp"
+#include "services/lab/twin/judged_light.hpp"
 #include "services/lab/twin/texture_lookup.hpp"
 #include "services/lab/twin/true_view.hpp"
 #include "services/lab/twin/twin.hpp"
@@ -17,82 +17,15 @@
 namespace handcast::twin {
 namespace {
 
-/// The light of one projection, which must outlive it, as the judge reads it.
-class JudgedLight {
- public:
-  explicit JudgedLight(const msg::Projection& projection);
-
-  /// The pixels that may be lit.
-  const renderer::Rect& region() const { return region_; }
-  /// Writes the alpha of [x0 .. x1) of row y of the projector.
-  void row(int y, int x0, int x1, std::uint8_t* alpha) const;
-  /// The least alpha with which a pixel of a hand has half of the intended light; 256: none has.
-  int least_alpha(msg::Side side) const { return least_alpha_[static_cast<std::size_t>(side)]; }
-
-  /// The hand and the texture coordinates that a pixel shows.
-  struct Shown {
-    msg::Side side;
-    glm::vec2 uv;
-  };
-  /// What a pixel shows whose coordinates are multiples of kShownStep_px; empty if it is dark.
-  std::optional<Shown> shown(int x, int y) const;
-
- private:
-  std::uint32_t hand_count() const;
-
-  const msg::Projection& projection_;
-  renderer::Rect region_;
-  std::array<int, 2> least_alpha_{128, 128};
-};
-
-int least_alpha_at(float presence) {
-  const double light = renderer::srgb_light(std::clamp(presence, 0.0f, 1.0f));
-  return light >= 0.5 ? static_cast<int>(std::ceil(127.5 / light)) : 256;
-}
-
-JudgedLight::JudgedLight(const msg::Projection& projection)
-    : projection_(projection),
-      region_{projection.region_x_px, projection.region_y_px,
-              projection.region_x_px + static_cast<int>(projection.region_width_px),
-              projection.region_y_px + static_cast<int>(projection.region_height_px)} {
-  for (std::uint32_t i = 0; i < hand_count(); ++i)
-    least_alpha_[static_cast<std::size_t>(projection.hands[i].side)] =
-        least_alpha_at(projection.hands[i].presence);
-}
-
-std::uint32_t JudgedLight::hand_count() const {
-  return std::min<std::uint32_t>(projection_.hand_count,
-                                 static_cast<std::uint32_t>(projection_.hands.size()));
-}
-
-void JudgedLight::row(int y, int x0, int x1, std::uint8_t* alpha) const {
-  std::fill(alpha + x0, alpha + x1, std::uint8_t{0});
-  if (y < region_.y0 || y >= region_.y1) return;
-  const std::uint32_t* pixels = projection_.pixels() +
-                                static_cast<std::ptrdiff_t>(y - region_.y0) * region_.width() -
-                                region_.x0;
-  for (int x = std::max(x0, region_.x0); x < std::min(x1, region_.x1); ++x)
-    alpha[x] = static_cast<std::uint8_t>(pixels[x] >> 24);
-}
-
-std::optional<JudgedLight::Shown> JudgedLight::shown(int x, int y) const {
-  if (projection_.has_shown == 0 || x < region_.x0 || x >= region_.x1 || y < region_.y0 ||
-      y >= region_.y1)
-    return std::nullopt;
-  const msg::ShownPoint& point = projection_.shown(x, y);
-  if (point.hand == 0 || point.hand > hand_count()) return std::nullopt;
-  return Shown{projection_.hands[point.hand - 1].side, glm::vec2(point.u, point.v) / 65535.0f};
-}
-
 using renderer::Rect;
 
 class RigJudge final : public Judge {
  public:
-  RigJudge(const Twin& twin, int width_px, int height_px, int step_px)
+  RigJudge(const Twin& twin, const calib::Calibration& seen, int step_px)
       : step_px_((std::max(step_px, 1) + kStep - 1) / kStep * kStep),
-        view_(twin, width_px, height_px),
+        view_(twin, seen),
         texture_(twin),
-        alpha_(width_px, height_px) {
+        alpha_(seen.projector.width_px, seen.projector.height_px) {
     for (const Side side : {Side::left, Side::right})
       fingers_[static_cast<std::size_t>(side)] = fingers_of(twin.true_hand(side).mesh);
   }
@@ -283,8 +216,7 @@ class RigJudge final : public Judge {
 }  // namespace
 
 std::unique_ptr<Judge> Judge::create(const Twin& twin, int step_px) {
-  const auto& rig = twin.geometry().calibration();
-  return std::make_unique<RigJudge>(twin, rig.projector.width_px, rig.projector.height_px, step_px);
+  return std::make_unique<RigJudge>(twin, twin.geometry().calibration(), step_px);
 }
 
 }  // namespace handcast::twin

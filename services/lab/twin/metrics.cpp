@@ -13,7 +13,6 @@ namespace handcast::twin {
 namespace {
 
 constexpr float kFar_mm = 10;  ///< light that is farther off is on another part of a finger
-constexpr std::size_t kMostKept = 1 << 17;
 constexpr std::array<double, 4> kSpeedSteps_m_s{0.1, 0.3, 0.6, 1.0};
 constexpr std::array<const char*, 5> kSpeedNames{"0-0.1", "0.1-0.3", "0.3-0.6", "0.6-1.0", ">1.0"};
 constexpr std::array<const char*, 2> kSideNames{"left", "right"};
@@ -27,18 +26,6 @@ nlohmann::json or_null(const std::optional<double>& value) {
 }
 
 }  // namespace
-
-void Metrics::Samples::add(float value) {
-  if (count_ % stride_ == 0) kept_.push_back(value);
-  ++count_;
-  sum_ += value;
-  if (kept_.size() < kMostKept) return;
-  for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
-  kept_.resize((kept_.size() + 1) / 2);
-  stride_ *= 2;
-}
-
-double Metrics::Samples::percentile(double share) const { return quantile(kept_, share); }
 
 void Metrics::Bin::add(const FrameScore::Hand& hand) {
   ++frames;

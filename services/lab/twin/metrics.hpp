@@ -9,6 +9,7 @@
 
 #include "ipc/msg/rung.hpp"
 #include "ipc/msg/stage_mark.hpp"
+#include "services/lab/twin/samples.hpp"
 #include "services/lab/twin/twin.hpp"
 
 namespace handcast::twin {
@@ -51,21 +52,6 @@ class Metrics {
   nlohmann::json to_json() const;
 
  private:
-  /// Samples with an exact mean and approximate percentiles. Above a fixed number, every second
-  /// sample is dropped, selected by order and not at random.
-  class Samples {
-   public:
-    void add(float value);
-    bool empty() const { return count_ == 0; }
-    double mean() const { return sum_ / static_cast<double>(count_); }
-    double percentile(double share) const;
-    const std::vector<float>& kept() const { return kept_; }
-
-   private:
-    std::vector<float> kept_;
-    std::uint64_t stride_ = 1, count_ = 0;
-    double sum_ = 0;
-  };
   struct Bin {
     Samples px, mm, lit_mm;
     std::int64_t frames = 0, hand_px = 0, lit_px = 0, spill_px = 0, union_px = 0;

@@ -18,14 +18,31 @@ glm::dvec3 direction(const Random& random, std::uint64_t draw) {
 }
 
 /// Moves the corners of the projector's image by `rms_px` per corner.
-glm::dmat3 corner_error(const calib::Calibration& rig, double rms_px, const Random& random) {
-  const double w = rig.projector.width_px, h = rig.projector.height_px;
+glm::dmat3 corner_error(const calib::ProjectorModel& projector, double rms_px, const Random& random,
+                        std::uint64_t draw) {
+  const double w = projector.width_px, h = projector.height_px;
   const std::array<glm::dvec2, 4> corners{{{0, 0}, {w, 0}, {w, h}, {0, h}}};
   auto moved = corners;
   for (std::uint64_t i = 0; i < 4; ++i)
-    moved[i] +=
-        rms_px / std::numbers::sqrt2 * glm::dvec2(random.normal(2 * i), random.normal(2 * i + 1));
+    moved[i] += rms_px / std::numbers::sqrt2 *
+                glm::dvec2(random.normal(draw + 2 * i), random.normal(draw + 2 * i + 1));
   return homography(corners, moved);
+}
+
+/// The projector as it is. `draw`: the first of the random numbers; 11 are used.
+calib::ProjectorModel true_projector(const config::TwinGeometry& settings,
+                                     const calib::CameraModel& camera,
+                                     calib::ProjectorModel projector, const Random& random,
+                                     std::uint64_t draw) {
+  const double angle = std::numbers::pi * random.spread(draw + 10);
+  const auto centre_m =
+      settings.projector_offset_mm * 1e-3 * glm::dvec3(std::cos(angle), std::sin(angle), 0);
+  projector.plane_m += settings.plane_mm * 1e-3;
+  if (settings.homography_px > 0)
+    projector.from_camera =
+        corner_error(projector, settings.homography_px, random, draw) * projector.from_camera;
+  projector.parallax -= projector.from_camera * (camera.matrix() * centre_m);
+  return projector;
 }
 
 /// Turns about the middle of the working volume and shifts, in camera space.
@@ -50,14 +67,11 @@ TrueGeometry::TrueGeometry(const config::TwinGeometry& settings, int seed,
                            const calib::Calibration& base, const calib::CameraModel& believed)
     : true_(base), believed_(believed) {
   const Random random(seed, Stream::geometry);
-  const double angle = std::numbers::pi * random.spread(10);
-  const auto centre_m =
-      settings.projector_offset_mm * 1e-3 * glm::dvec3(std::cos(angle), std::sin(angle), 0);
-  true_.projector.plane_m += settings.plane_mm * 1e-3;
-  if (settings.homography_px > 0)
-    true_.projector.from_camera =
-        corner_error(base, settings.homography_px, random) * base.projector.from_camera;
-  true_.projector.parallax -= true_.projector.from_camera * (true_.camera.matrix() * centre_m);
+  constexpr std::uint64_t kOfSecond = 50;  // a second projector has errors of its own
+  true_.projector = true_projector(settings, true_.camera, base.projector, random, 0);
+  if (base.projector2)
+    true_.projector2->model =
+        true_projector(settings, true_.camera, base.projector2->model, random, kOfSecond);
   if (settings.tracker_mm > 0 || settings.tracker_deg > 0)
     true_.camera_from_tracker = pose_error(settings, random) * base.camera_from_tracker;
   if (settings.lens_px > 0) true_.camera.k1 += lens_error(base.camera, settings.lens_px, random);

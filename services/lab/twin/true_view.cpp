@@ -16,12 +16,13 @@ constexpr std::int64_t kVelocityStep_ns = 1'000'000;
 
 }  // namespace
 
-TrueView::TrueView(const Twin& twin, int width_px, int height_px)
-    : twin_(twin), surface_(width_px, height_px), inverse_depth_(width_px, height_px) {
-  // A homography that mirrors reverses the orientation of the triangles.
-  front_ = glm::determinant(glm::dmat2(twin.geometry().calibration().projector.from_camera)) > 0
-               ? -1.0f
-               : 1.0f;
+TrueView::TrueView(const Twin& twin, const calib::Calibration& seen)
+    : twin_(twin),
+      projection_(seen.projection()),
+      surface_(seen.projector.width_px, seen.projector.height_px),
+      inverse_depth_(seen.projector.width_px, seen.projector.height_px) {
+  // A projection that mirrors reverses the orientation of the triangles.
+  front_ = glm::determinant(glm::dmat3(projection_)) > 0 ? -1.0f : 1.0f;
   for (const Side side : {Side::left, Side::right}) {
     const auto s = static_cast<std::size_t>(side);
     behind_wrist_m_[s] = behind_wrist_m(twin.true_hand(side).mesh);
@@ -48,10 +49,10 @@ void TrueView::pose(std::int64_t time_ns) {
 void TrueView::project(std::span<const glm::vec3> positions, ScreenVertices& screen) const {
   screen.resize(positions.size());
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    const glm::vec2 px = to_projector(positions[v]);
-    screen.x[v] = px.x;
-    screen.y[v] = px.y;
-    screen.inverse_depth[v] = 1 / positions[v].z;
+    const glm::dvec3 seen = at(positions[v]);
+    screen.x[v] = static_cast<float>(seen.x / seen.z);
+    screen.y[v] = static_cast<float>(seen.y / seen.z);
+    screen.inverse_depth[v] = static_cast<float>(1 / seen.z);
   }
 }
 
@@ -92,7 +93,18 @@ void TrueView::pose_arm(SeenHand& hand, const JointFrames& joints) {
   project(after_, hand.arm);
 }
 
+std::optional<glm::ivec2> TrueView::lit_by(const glm::vec3& camera_m) const {
+  constexpr double kBehind_m = 0.002;  // a pixel's breadth on a steep surface
+  const glm::dvec3 seen = at(camera_m);
+  const glm::ivec2 px(glm::round(glm::dvec2(seen) / seen.z));
+  if (px.x < drawn_.x0 || px.y < drawn_.y0 || px.x >= drawn_.x1 || px.y >= drawn_.y1) return {};
+  if (!is_hand(surface_.at(px.x, px.y)) || 1 / inverse_depth_.at(px.x, px.y) < seen.z - kBehind_m)
+    return {};
+  return px;
+}
+
 void TrueView::draw(const Rect& area) {
+  drawn_ = area;
   for (int y = area.y0; y < area.y1; ++y) {
     std::fill_n(surface_.row(y) + area.x0, area.width(), kNothing);
     std::fill_n(inverse_depth_.row(y) + area.x0, area.width(), 0.0f);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,12 +41,13 @@ struct SeenHand {
   ScreenVertices arm;                             ///< the forearm's vertices
 };
 
-/// The true hands at one time, drawn into the image of the projector as it really is. Reuses its
+/// The true hands at one time, drawn into the image of a projector as it really is. Reuses its
 /// buffers. One thread.
 class TrueView {
  public:
-  /// For images of the calibration's projector. `twin` must outlive it.
-  TrueView(const Twin& twin, int width_px, int height_px);
+  /// For images of the projector of `seen`, which is the twin's true calibration or differs from it
+  /// in the projector. `twin` must outlive it.
+  TrueView(const Twin& twin, const calib::Calibration& seen);
 
   /// Poses the hands of a time.
   void pose(std::int64_t time_ns);
@@ -60,8 +62,12 @@ class TrueView {
   renderer::Rect screen() const { return {0, 0, surface_.width(), surface_.height()}; }
   /// The pixel that lights a point in camera space, m.
   glm::vec2 to_projector(const glm::vec3& camera_m) const {
-    return glm::vec2(twin_.geometry().to_projector(glm::dvec3(camera_m)));
+    const glm::dvec3 seen = at(camera_m);
+    return glm::vec2(glm::dvec2(seen) / seen.z);
   }
+  /// The pixel that lights a point of a hand in camera space; empty if it lies outside the area
+  /// that was drawn last, or something is in between.
+  std::optional<glm::ivec2> lit_by(const glm::vec3& camera_m) const;
 
  private:
   std::optional<JointFrames> joints_in_camera(Side side, std::int64_t time_ns) const;
@@ -71,13 +77,17 @@ class TrueView {
   void project(std::span<const glm::vec3> positions, ScreenVertices& screen) const;
   void draw_hand(std::size_t index, const renderer::Rect& area);
 
+  glm::dvec3 at(const glm::vec3& camera_m) const { return projection_ * glm::dvec4(camera_m, 1); }
+
   const Twin& twin_;
-  float front_;  ///< sign of the area of triangles that face the projector
+  glm::dmat4x3 projection_;  ///< calib::Calibration::projection()
+  float front_;              ///< sign of the area of triangles that face the projector
   std::array<std::vector<float>, 2> behind_wrist_m_;
   std::array<Forearm, 2> forearms_;
   std::array<SeenHand, 2> seen_;
   std::size_t count_ = 0;
   std::vector<glm::vec3> before_, after_;
+  renderer::Rect drawn_;  ///< the area of draw()
   renderer::Image<Surface> surface_;
   renderer::Image<float> inverse_depth_;
 };

@@ -256,6 +256,7 @@ static Result<calib::Calibration> true_base(const config::Rig& rig,
                                               "sizes than the calibration of the rig",
                                               file));
   if (base && !base->camera2) base->camera2 = believed.camera2;
+  if (base) base->projector2 = believed.projector2;
   return base;
 }
 

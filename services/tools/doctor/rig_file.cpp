@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "calib/sub_frames.hpp"
 #include "config/second_view.hpp"
 
 #ifdef HANDCAST_WITH_WINDOW
@@ -132,7 +133,7 @@ Finding calibration_of(const config::Rig& rig) {
             "make one with `handcast calibrate RIG.toml --camera WxH --projector WxH --apply`"};
   if (rig.calibration.empty())
     return {"calibration", Grade::good, "that of the reference rig, which the twin has", ""};
-  const auto calibration = calib::load_calibration(rig.calibration);
+  const auto calibration = calib::load_calibration(rig.calibration, {}, rig.projector2);
   if (!calibration)
     return {"calibration", Grade::fault, calibration.error().what, "`handcast config --check`"};
   const bool has_second = config::has_second_view(rig);
@@ -151,6 +152,30 @@ Finding calibration_of(const config::Rig& rig) {
           ""};
 }
 
+/// Of a rig with two projectors, which the calibration has.
+std::vector<Finding> examine_second_display(const config::Rig& rig,
+                                            const calib::Calibration& calibration) {
+  constexpr auto kSecond = config::Viewpoint::second;
+  auto findings = examine_display(config::rig_at_projector(rig, kSecond),
+                                  calib::at_projector(calibration, kSecond));
+  for (auto& finding : findings) finding.sentence = "projector2: " + finding.sentence;
+  const auto& first = rig.projector;
+  const auto& second = rig.projector2;
+  const auto both = [&](std::string_view backend) {
+    return first.backend == backend && second.backend == backend;
+  };
+  if (both("window") && first.window.full_screen && first.window.monitor == second.window.monitor)
+    findings.push_back({"display", Grade::fault, "both projectors of the rig have one monitor",
+                        "name one in projector.window.monitor and the other in "
+                        "projector2.window.monitor; `handcast devices` lists them"});
+  if (both("kms") && first.kms.card == second.kms.card)
+    findings.push_back({"display", Grade::fault,
+                        "both projectors of the rig are on one graphics card, which `kms` holds "
+                        "for one process",
+                        "use the back end `window`, or a card for each (kms.card)"});
+  return findings;
+}
+
 }  // namespace
 
 std::vector<Finding> examine_file(const Result<config::Rig>& rig) {
@@ -159,8 +184,11 @@ std::vector<Finding> examine_file(const Result<config::Rig>& rig) {
              "`handcast config --reference` explains all settings"}};
   std::vector<Finding> findings{{"rig file", Grade::good, fmt::format("rig '{}'", rig->name), ""},
                                 calibration_of(*rig)};
-  if (const auto calibration = calib::load_calibration(rig->calibration))
-    for (auto& finding : examine_display(*rig, *calibration))
+  const auto calibration = calib::load_calibration(rig->calibration, {}, rig->projector2);
+  if (!calibration) return findings;
+  for (auto& finding : examine_display(*rig, *calibration)) findings.push_back(std::move(finding));
+  if (calibration->projector2)
+    for (auto& finding : examine_second_display(*rig, *calibration))
       findings.push_back(std::move(finding));
   return findings;
 }

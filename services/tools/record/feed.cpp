@@ -129,7 +129,8 @@ Result<std::unique_ptr<Feed>> open_feed(const std::string& rig, const std::strin
   if (name == "pose.hands") return open_as<msg::HandPoses>(rig, name, settings);
   if (name == "landmarks.hands" || name == "landmarks2.hands")
     return open_as<msg::Landmarks>(rig, name, settings);
-  if (name == "projection.frames") return open_as<msg::Projection>(rig, name, settings);
+  if (name == "projection.frames" || name == "projection2.frames")
+    return open_as<msg::Projection>(rig, name, settings);
   if (name.starts_with("marks.")) return open_as<msg::StageMarks>(rig, name, settings);
   return fail(Errc::bad_config, fmt::format("the messages of ring '{}' are unknown", name));
 }

@@ -224,7 +224,7 @@ class TheCompletion(unittest.TestCase):
         self.assertNotIn("camera.backend=", self.completed("set", ""))
 
     def test_offers_services_back_ends_and_looks(self):
-        self.assertEqual(self.completed("swap", "proj"), ["projector"])
+        self.assertEqual(self.completed("swap", "proj"), ["projector", "projector2"])
         self.assertEqual(self.completed("swap", "projector", "fi"), ["file"])
         self.assertEqual(self.completed("content", "la"), ["lava"])
         self.assertEqual(self.completed("desk", "--for", "v"), ["viewer"])

@@ -35,7 +35,7 @@ class LiveLightTest : public testing::Test {
   std::unique_ptr<renderer::Pipeline> pipeline_ =
       *renderer::Pipeline::create(rig_.cascade, rig_.content, rig_.hand, calib::reference_rig());
   Brightness brightness_{rig_.projector, rig_.light, 1};
-  LiveLight light_{*live_, rig_, *pipeline_, brightness_, 1024, 768};
+  LiveLight light_{*live_, rig_, config::Viewpoint::first, *pipeline_, brightness_, 1024, 768};
 };
 
 TEST_F(LiveLightTest, ChangesArriveBetweenTwoFrames) {
@@ -49,6 +49,18 @@ TEST_F(LiveLightTest, ChangesArriveBetweenTwoFrames) {
   EXPECT_FALSE(light_.is_frozen());
   set({"projector.brightness=0.25"});
   EXPECT_EQ(light_.settings()->brightness, 0.25);
+}
+
+TEST_F(LiveLightTest, TheSecondProjectorHasABrightnessOfItsOwn) {
+  LiveLight second{*live_, rig_, config::Viewpoint::second, *pipeline_, brightness_, 1024, 768};
+  config::LiveBoard board(ring(), rig_, "");
+  const std::vector<std::string> both{"projector.brightness=0.25", "projector2.brightness=0.75"};
+  ASSERT_TRUE(board.set(both, "test"));
+  bool is_there = false;
+  for (const auto until = Deadline::in(std::chrono::seconds(5)); !is_there && !until.passed();)
+    is_there = second.follow(now_ns());
+  ASSERT_TRUE(is_there);
+  EXPECT_EQ(second.settings()->brightness, 0.75);
 }
 
 TEST_F(LiveLightTest, AProcessThatIsStartedLaterHasThemFromTheStart) {

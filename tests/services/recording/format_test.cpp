@@ -33,8 +33,9 @@ class Format : public testing::Test {
 };
 
 TEST_F(Format, TheFieldsInTheFileAreThoseOfTheMessages) {
-  for (const auto* stream : {"camera.frames", "camera2.frames", "pose.hands", "landmarks.hands",
-                             "landmarks2.hands", "projection.frames", "marks.camera"}) {
+  for (const auto* stream :
+       {"camera.frames", "camera2.frames", "pose.hands", "landmarks.hands", "landmarks2.hands",
+        "projection.frames", "projection2.frames", "marks.camera"}) {
     const auto& type = *type_of_stream(stream);
     EXPECT_EQ(size_of(json::parse(type.fields)), type.bytes) << stream;
   }

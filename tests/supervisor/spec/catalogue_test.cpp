@@ -132,6 +132,7 @@ TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
       {"camera2", {}},
       {"landmarks2", {"camera2"}},
       {"projector", {"camera", "pose", "landmarks"}},
+      {"projector2", {"camera", "pose", "landmarks"}},
       {"content", {}},
       {"desk", {}},
       {"dlp", {}},
@@ -142,6 +143,7 @@ TEST(BuiltCatalogue, ASubscriberStartsAfterThosePublishersThatItNeeds) {
   config::Rig rig;
   rig.dlp.backend = "lightcrafter";
   rig.camera2.backend = "twin";
+  rig.projector2.backend = "twin";
   rig.observer.enabled = true;
   rig.supervisor.metrics_port = 9100;
   rig.watch.enabled = true;
@@ -182,6 +184,16 @@ TEST(BuiltCatalogue, ASecondCameraHasServicesOfItsOwn) {
   EXPECT_THAT(camera2.settings, testing::Contains("camera2.rate_hz"));
   EXPECT_THAT(catalogue.at("landmarks2").subscribes,
               testing::ElementsAre("camera2.frames", "pose.hands", "guest.landmarks2"));
+}
+
+TEST(BuiltCatalogue, EachOfTwoProjectorsWatchesTheOthersLight) {
+  const auto catalogue = test::built_catalogue();
+  const auto &first = catalogue.at("projector"), &second = catalogue.at("projector2");
+  EXPECT_THAT(second.publishes, testing::ElementsAre("projection2.frames"));
+  EXPECT_THAT(second.subscribes, testing::Contains("projection.frames"));
+  EXPECT_THAT(first.subscribes, testing::Contains("projection2.frames"));
+  EXPECT_THAT(second.settings, testing::Contains("projector2"));
+  EXPECT_THAT(second.settings, testing::Not(testing::Contains("projector")));
 }
 
 TEST(BuiltCatalogue, AProgramOfSomebodyIsAServiceIfItsBackEndListens) {

@@ -170,7 +170,8 @@ TEST(Fingerprint, ARealCameraDependsOnItsOwnSection) {
 
 TEST(Fingerprint, TheProjectorDependsOnTheCascadeAndWhatIsDrawnAndNotOnTheTwin) {
   expect_reads("projector", {},
-               {"projector", "light", "content.shading", "content.smooth", "hand", "cascade"},
+               {"projector", "projector2.backend", "projector2.calibration", "light",
+                "content.shading", "content.smooth", "hand", "cascade"},
                {"projector.process.standby"});
 }
 
@@ -181,10 +182,28 @@ TEST(Fingerprint, ContentDependsOnItsSectionAndOnWhatPredictsTheHandsThatItReact
 
 TEST(Fingerprint, TheDeskDependsOnAllThatItLetsPeopleChange) {
   expect_reads("desk", {},
-               {"desk", "light", "hand", "cascade", "twin.tracker", "twin.detector", "twin.image",
-                "projector.lamp", "projector.frame_wait_ms", "projector.brightness",
-                "projector.gamma", "projector.fade_s", "content.left", "content.right",
-                "content.transition", "content.transition_s", "content.shading", "content.gravity"},
+               {"desk",
+                "light",
+                "hand",
+                "cascade",
+                "twin.tracker",
+                "twin.detector",
+                "twin.image",
+                "projector.lamp",
+                "projector.frame_wait_ms",
+                "projector.brightness",
+                "projector.gamma",
+                "projector.fade_s",
+                "projector2.frame_wait_ms",
+                "projector2.brightness",
+                "projector2.gamma",
+                "projector2.fade_s",
+                "content.left",
+                "content.right",
+                "content.transition",
+                "content.transition_s",
+                "content.shading",
+                "content.gravity"},
                {"desk.process.standby", "cascade.mask.forearm_mm", "twin.tracker.rate_hz"});
 }
 
@@ -281,6 +300,8 @@ TEST(Fingerprint, EverySettingOfTheRigIsInAFingerprintOrTheSupervisorsOwn) {
     read.merge(read_by("landmarks2", pair("twin", landmarks2)));
   read.merge(read_by("dlp", commanded()));
   config::Rig rig;
+  rig.projector2.backend = "twin";
+  read.merge(read_by("projector2", rig));
   for (const auto& section : config::list_settings(rig)) {
     for (const auto& setting : section.settings) {
       const auto& path = setting.path;

@@ -299,6 +299,24 @@ TEST(Display, IsJudgedByTheCalibrationAndTheRate) {
   EXPECT_EQ(grade({"it", 1280, 800, 60}, "display"), Grade::fault) << "sub-frames cannot be scaled";
 }
 
+TEST(Display, TwoProjectorsNeedOneEach) {
+  config::Rig rig;
+  rig.calibration = "config/calibrations/left_of_two.toml";
+  rig.projector2.calibration = "config/calibrations/right_of_two.toml";
+  const auto complaint = [&](const char* backend) {
+    rig.projector.backend = rig.projector2.backend = backend;
+    std::string all;
+    for (const auto& finding : examine_file(rig)) all += finding.sentence + "\n";
+    return all;
+  };
+  EXPECT_THAT(complaint("window"), HasSubstr("have one monitor"));
+  EXPECT_THAT(complaint("kms"), HasSubstr("on one graphics card"));
+  rig.projector2.window.monitor = "HDMI-2";
+  rig.projector2.kms.card = "/dev/dri/card1";
+  EXPECT_THAT(complaint("window"), testing::Not(HasSubstr("have one monitor")));
+  EXPECT_THAT(complaint("kms"), testing::Not(HasSubstr("on one graphics card")));
+}
+
 TEST(Display, IsNotLookedForIfTheRigHasNone) {
   config::Rig rig;
   for (const auto* backend : {"twin", "file"}) {
