@@ -11,9 +11,9 @@ namespace handcast::renderer {
 namespace {
 
 constexpr float kNowhere_m = std::numeric_limits<float>::max();
-/// Width of a cell of the map of depths: wider than the distance of two vertices, and narrower than
-/// a finger.
-constexpr int kCell_px = 12;
+/// Width of a cell of the map of depths, on a hand at plane_m: wider than the distance of two
+/// vertices, and narrower than a finger.
+constexpr double kCell_mm = 6;
 /// A shadow is looked for this many cells around a vertex, so that a light ends gently before its
 /// shadow begins.
 constexpr int kAround = 1;
@@ -25,17 +25,21 @@ constexpr float kBorder = 0.05f;
 
 float power4(float x) { return x * x * x * x; }
 
+int cell_px_of(const calib::Calibration& calibration) {
+  const double mm = calibration.mm_per_projector_px(calibration.projector.plane_m);
+  return static_cast<int>(std::lround(std::clamp(kCell_mm / mm, 1.0, 100.0)));
+}
+
 }  // namespace
 
-LightShare::Beam::Beam(const calib::Calibration& calibration, const calib::ProjectorModel& model)
-    : width_px(static_cast<float>(model.width_px)),
-      height_px(static_cast<float>(model.height_px)),
-      nearest_m(model.width_px / kCell_px + 1, model.height_px / kCell_px + 1) {
-  auto own = calibration;
-  own.projector = model;
-  projection = glm::mat4x3(own.projection());
-  centre_m = glm::vec3(model.centre_m(calibration.camera));
-}
+LightShare::Beam::Beam(const calib::Calibration& calibration)
+    : projection(calibration.projection()),
+      centre_m(calibration.projector.centre_m(calibration.camera)),
+      width_px(static_cast<float>(calibration.projector.width_px)),
+      height_px(static_cast<float>(calibration.projector.height_px)),
+      cell_px(cell_px_of(calibration)),
+      nearest_m(calibration.projector.width_px / cell_px + 1,
+                calibration.projector.height_px / cell_px + 1) {}
 
 /// Pixel and depth of a point.
 glm::vec3 LightShare::Beam::seen(const glm::vec3& point_m) const {
@@ -46,21 +50,19 @@ glm::vec3 LightShare::Beam::seen(const glm::vec3& point_m) const {
 /// Enters the vertices of a hand into the map of depths.
 void LightShare::Beam::meet(const Hand& hand, std::vector<glm::vec3>& seen_px) {
   seen_px.resize(hand.position_m.size());
-  const auto width = static_cast<float>(kCell_px * nearest_m.width()),
-             height = static_cast<float>(kCell_px * nearest_m.height());
   for (std::size_t v = 0; v < seen_px.size(); ++v) {
     const glm::vec3 at = seen_px[v] = seen(hand.position_m[v]);
     // Written so that coordinates that are not finite leave the vertex out.
-    if (!(at.z > 0 && at.x >= 0 && at.y >= 0 && at.x < width && at.y < height)) continue;
+    if (!(at.z > 0 && at.x >= 0 && at.y >= 0 && at.x < width_px && at.y < height_px)) continue;
     auto& nearest =
-        nearest_m.at(static_cast<int>(at.x) / kCell_px, static_cast<int>(at.y) / kCell_px);
+        nearest_m.at(static_cast<int>(at.x) / cell_px, static_cast<int>(at.y) / cell_px);
     nearest = std::min(nearest, at.z);
   }
 }
 
 /// 1 where nothing near casts a shadow, 0 from the edge of a shadow on.
 float LightShare::Beam::lit_part(const glm::vec3& seen) const {
-  const int column = static_cast<int>(seen.x) / kCell_px, row = static_cast<int>(seen.y) / kCell_px;
+  const int column = static_cast<int>(seen.x) / cell_px, row = static_cast<int>(seen.y) / cell_px;
   const Rect around =
       Rect{column - kAround, row - kAround, column + kAround + 1, row + kAround + 1}.within(
           nearest_m.width(), nearest_m.height());
@@ -82,8 +84,8 @@ float LightShare::Beam::quality(const glm::vec3& seen, const glm::vec3& point_m,
 }
 
 LightShare::LightShare(const calib::Calibration& calibration)
-    : beams_{Beam(calibration, calibration.projector),
-             Beam(calibration, calibration.projector2->model)} {}
+    : beams_{Beam(calibration), Beam(calib::at_projector(calibration, config::Viewpoint::second))} {
+}
 
 void LightShare::apply(std::span<const Hand> hands, float beside) {
   for (std::size_t b = 0; b < beams_.size(); ++b) {

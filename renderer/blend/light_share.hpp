@@ -34,7 +34,7 @@ class LightShare {
  private:
   /// A projector, and what its light meets first.
   struct Beam {
-    Beam(const calib::Calibration& calibration, const calib::ProjectorModel& model);
+    explicit Beam(const calib::Calibration& calibration);
 
     glm::vec3 seen(const glm::vec3& point_m) const;
     void meet(const Hand& hand, std::vector<glm::vec3>& seen);
@@ -44,6 +44,7 @@ class LightShare {
     glm::mat4x3 projection;     ///< camera space to homogeneous px; the third row is the depth, m
     glm::vec3 centre_m;         ///< in camera space
     float width_px, height_px;  ///< of its image
+    int cell_px;                ///< width and height of a cell
     Image<float> nearest_m;     ///< the least depth by cell of its image
   };
 
