@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ipc/msg/projection.hpp"
 #include "renderer/base/srgb.hpp"
 
 namespace handcast::renderer {
@@ -49,8 +50,9 @@ glm::vec3 LightShare::Beam::seen(const glm::vec3& point_m) const {
 
 /// Enters the vertices of a hand into the map of depths.
 void LightShare::Beam::meet(const Hand& hand, std::vector<glm::vec3>& seen_px) {
-  seen_px.resize(hand.position_m.size());
-  for (std::size_t v = 0; v < seen_px.size(); ++v) {
+  const auto count = hand.position_m.size();
+  if (seen_px.size() < count) seen_px.resize(count);
+  for (std::size_t v = 0; v < count; ++v) {
     const glm::vec3 at = seen_px[v] = seen(hand.position_m[v]);
     // Written so that coordinates that are not finite leave the vertex out.
     if (!(at.z > 0 && at.x >= 0 && at.y >= 0 && at.x < width_px && at.y < height_px)) continue;
@@ -85,6 +87,8 @@ float LightShare::Beam::quality(const glm::vec3& seen, const glm::vec3& point_m,
 
 LightShare::LightShare(const calib::Calibration& calibration)
     : beams_{Beam(calibration), Beam(calib::at_projector(calibration, config::Viewpoint::second))} {
+  // A hand that comes later finds its memory touched.
+  for (auto& hand : seen_) hand.fill(std::vector<glm::vec3>(msg::kMaxVertices));
 }
 
 void LightShare::apply(std::span<const Hand> hands, float beside) {

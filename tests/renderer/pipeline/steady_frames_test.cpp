@@ -56,8 +56,10 @@ Held held_at(std::int64_t time_ns) {
 /// comes after the first part.
 class Scene {
  public:
-  Scene(const config::Cascade& settings, int hands)
-      : hands_(hands), pipeline_(make_pipeline(settings, rig_, {})) {
+  Scene(const config::Cascade& settings, int hands, bool is_shared)
+      : rig_(rig_above_hand()), hands_(hands) {
+    if (is_shared) rig_.projector2 = calib::SecondProjector{"", rig_.projector};
+    pipeline_ = make_pipeline(settings, rig_, {});
     prefault_memory();
   }
 
@@ -142,7 +144,7 @@ class Scene {
 
   static thread_local std::vector<test::FrameCosts> looks_;
 
-  calib::Calibration rig_ = rig_above_hand();
+  calib::Calibration rig_;
   int hands_, most_hands_ = 0;
   std::unique_ptr<Pipeline> pipeline_;
   std::int64_t now_ns_ = 0, exposed_ns_ = 0, sample_ns_ = 0, detection_ns_ = 0;
@@ -168,9 +170,9 @@ class SteadyFrames : public ::testing::TestWithParam<config::CorrectMethod> {
   }
   /// Counts in all parts but the first, in which the hands rest. The system may take a page back,
   /// but hardly in three scenes in succession; a first touch comes in each.
-  void expect_steady(int hands) {
+  static void expect_steady(int hands, bool is_shared = false) {
     for (int left = 3; left > 0; --left) {
-      Scene scene(cascade(GetParam(), config::FillMethod::reflect), hands);
+      Scene scene(cascade(GetParam(), config::FillMethod::reflect), hands, is_shared);
       scene.run(kPart_ns);
       scene.forget();
       scene.run(static_cast<int>(Part::count) * kPart_ns);
@@ -193,6 +195,10 @@ TEST_P(SteadyFrames, OneHandThatGrowsCrossesTheScreenClosesAndLeavesCostsNothing
 }
 
 TEST_P(SteadyFrames, NeitherDoTwoHandsOfWhichOneComesLater) { expect_steady(2); }
+
+TEST_P(SteadyFrames, NorDoTwoHandsWhoseLightIsSharedWithAnotherProjector) {
+  expect_steady(2, true);
+}
 
 }  // namespace
 }  // namespace handcast::renderer
