@@ -107,6 +107,13 @@ void print_shared(const nlohmann::json& json) {
   const auto text = [&](const char* pointer, const char* form) {
     return text_of(json["shared"], pointer, form);
   };
+  if (!json["shared"]["coverage"].is_number()) {
+    fmt::print(
+        "both projectors: apart {} (mean); their light is measured on white hands: --set "
+        "content.left=builtin:white --set content.right=builtin:white\n",
+        text("/apart_mm/mean", "{:.1f} mm"));
+    return;
+  }
   fmt::print(
       "both projectors: coverage {} (the first alone {}), light {} (p5) to {} (p95), step between "
       "neighbours {} (p99), apart {} (mean)\n",

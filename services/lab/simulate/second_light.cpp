@@ -17,6 +17,10 @@ int as_often(const config::Rig& rig, int draw_every) {
   return std::max(1, static_cast<int>(std::lround(frames)));
 }
 
+bool is_white(const config::Content& content) {
+  return content.left == "builtin:white" && content.right == "builtin:white";
+}
+
 }  // namespace
 
 Result<std::unique_ptr<SecondLight>> SecondLight::open(const config::Rig& rig,
@@ -37,7 +41,7 @@ SecondLight::SecondLight(const config::Rig& rig, const calib::Calibration& calib
       simulation_(config::rig_at_projector(rig, Viewpoint::second),
                   calib::at_projector(calibration, Viewpoint::second), *parts_.pipeline, *feed_,
                   as_often(rig, options.draw_every)),
-      judge_(twin) {}
+      judge_(twin, is_white(rig.content)) {}
 
 void SecondLight::judge(const msg::Projection& first, std::int64_t now_ns) {
   while (simulation_.now_ns() <= now_ns)

@@ -36,8 +36,9 @@ nlohmann::json percentiles(const Samples& values,
 
 }  // namespace
 
-SharedJudge::SharedJudge(const Twin& twin)
-    : beams_{Beam(twin, twin.geometry().calibration()),
+SharedJudge::SharedJudge(const Twin& twin, bool is_white)
+    : is_white_(is_white),
+      beams_{Beam(twin, twin.geometry().calibration()),
              Beam(twin,
                   calib::at_projector(twin.geometry().calibration(), config::Viewpoint::second))},
       eye_(twin, as_seen(twin.geometry().calibration())) {}
@@ -91,13 +92,7 @@ void SharedJudge::add_hand(std::size_t hand, const std::array<JudgedLight, 2>& l
         light[b] = lights[b].light_at(px->x, px->y);
     }
     if (light[0] < 0 && light[1] < 0) continue;
-    const float sum = std::max(light[0], 0.0f) + std::max(light[1], 0.0f);
-    of_vertex_[v] = sum;
-    ++reached_;
-    covered_ += sum >= kCovered;
-    covered_first_ += light[0] >= kCovered;
-
-    if (sum > 0) light_.add(sum);
+    if (is_white_) add_light(v, light);
     if (light[0] <= 0 || light[1] <= 0) continue;
     const auto first = displacement(beams_[0], lights[0], hand, v),
                second = displacement(beams_[1], lights[1], hand, v);
@@ -107,6 +102,16 @@ void SharedJudge::add_hand(std::size_t hand, const std::array<JudgedLight, 2>& l
     for (const auto& [a, b] : {std::pair{i, j}, std::pair{j, k}, std::pair{k, i}})
       if (of_vertex_[a] > 0 && of_vertex_[b] > 0)
         steps_.add(std::abs(of_vertex_[a] - of_vertex_[b]));
+}
+
+/// `light`: of each projector on a vertex; negative: it is not reached.
+void SharedJudge::add_light(std::size_t vertex, const std::array<float, 2>& light) {
+  const float sum = std::max(light[0], 0.0f) + std::max(light[1], 0.0f);
+  of_vertex_[vertex] = sum;
+  ++reached_;
+  covered_ += sum >= kCovered;
+  covered_first_ += light[0] >= kCovered;
+  if (sum > 0) light_.add(sum);
 }
 
 nlohmann::json SharedJudge::to_json() const {

@@ -21,8 +21,9 @@ namespace handcast::twin {
 /// of them can reach, and draws it. One thread.
 class SharedJudge {
  public:
-  /// `twin`, whose rig has two projectors, must outlive it.
-  explicit SharedJudge(const Twin& twin);
+  /// `twin`, whose rig has two projectors, must outlive it. `is_white`: white is painted on the
+  /// hands, so that a pixel shows how much light was meant for it.
+  SharedJudge(const Twin& twin, bool is_white);
 
   /// Adds a moment: the light of both projectors, each on the hands of its own time (lit_ns, since
   /// the twin's epoch).
@@ -36,8 +37,7 @@ class SharedJudge {
   ///      "step": {p50, p99}: how much the light differs between neighbours with light,
   ///      "apart_mm": {mean, p95}: where both light a vertex, how far apart they put the picture}
   ///
-  /// "light" and "step" mean something on white hands only (content.left, content.right =
-  /// "builtin:white"). A value that was not measured is null.
+  /// A value that was not measured is null: all but "apart_mm" on hands that are not white.
   nlohmann::json to_json() const;
 
   /// The hands of the last moment as the camera sees them, RGBA8: with the light of the first
@@ -57,7 +57,9 @@ class SharedJudge {
   static std::optional<glm::vec3> displacement(const Beam& beam, const JudgedLight& light,
                                                std::size_t hand, std::size_t vertex);
   void add_hand(std::size_t hand, const std::array<JudgedLight, 2>& lights);
+  void add_light(std::size_t vertex, const std::array<float, 2>& light);
 
+  bool is_white_;
   std::array<Beam, 2> beams_;
   TrueView eye_;
   Samples light_, steps_, apart_mm_;

@@ -63,6 +63,13 @@ TEST(TwoProjectors, APictureShowsTheFirstTheSecondAndBoth) {
   EXPECT_GT(light[2], light[1]);
 }
 
+TEST(TwoProjectors, OnAPictureOnlyTheDistanceIsMeasured) {
+  const auto shared = run_rig("two_projectors", "builtin:still", 0.1)["shared"];
+  EXPECT_TRUE(shared["coverage"].is_null());
+  EXPECT_TRUE(shared["light"]["p50"].is_null());
+  EXPECT_GT(figure(shared, "/apart_mm/mean"), 0);
+}
+
 TEST(OneProjector, HasNoSharedLight) {
   EXPECT_TRUE(run_rig("twin", "builtin:still", 0.1)["shared"].is_null());
 }
