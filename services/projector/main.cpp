@@ -50,7 +50,7 @@ static void run_projector(service::Context& context, Viewpoint at) {
                            calibration.id);
   projector::TestPictures test_pictures(must(context.reader<msg::TestPicture>(msg::kTestPictures)),
                                         calibration.projector.width_px,
-                                        calibration.projector.height_px);
+                                        calibration.projector.height_px, at);
   projector::Brightness brightness(rig.projector, rig.light, context.epoch_ns());
   const auto live_settings = must(context.live_settings());
   projector::LiveLight live(*live_settings, rig, at, *pipeline, brightness,

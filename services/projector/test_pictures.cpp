@@ -39,14 +39,14 @@ bool TestPictures::take_newest() {
   const auto newest = pictures_.latest(Deadline::now());
   if (!newest) return false;
   const msg::TestPicture& picture = **newest;
-  if (picture.header.frame_id == 0 || static_cast<int>(picture.width_px) != image_.width() ||
-      static_cast<int>(picture.height_px) != image_.height())
-    return false;
+  const bool fits = static_cast<int>(picture.width_px) == image_.width() &&
+                    static_cast<int>(picture.height_px) == image_.height();
+  if (picture.header.frame_id == 0 || (!fits && !is_black_)) return false;
   until_ns_ = picture.header.published_ns + msg::TestPicture::kLasting_ns;
   if (frame_.test_picture == picture.header.frame_id) return true;
   auto& pixels = image_.pixels();
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    pixels[i] = 0xff000000u | picture.levels()[i] * 0x010101u;
+    pixels[i] = 0xff000000u | (is_black_ ? 0 : picture.levels()[i] * 0x010101u);
   flip_ = config::Flip::none;
   frame_.colour = image_.view();
   frame_.region = {0, 0, image_.width(), image_.height()};

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "config/sections/light.hpp"
+#include "config/sections/viewpoint.hpp"
 #include "ipc/msg/test_picture.hpp"
 #include "ipc/ring/reader.hpp"
 #include "renderer/pipeline/frame.hpp"
@@ -13,8 +14,12 @@ namespace handcast::projector {
 class TestPictures {
  public:
   /// Takes the reader of the ring calibration.pictures. The sizes are those of the projector.
-  TestPictures(ipc::Reader<msg::TestPicture> pictures, int width_px, int height_px)
-      : pictures_(std::move(pictures)), image_(width_px, height_px) {}
+  /// `at`: the pictures are for the first projector; the second one is black meanwhile.
+  TestPictures(ipc::Reader<msg::TestPicture> pictures, int width_px, int height_px,
+               config::Viewpoint at = config::Viewpoint::first)
+      : pictures_(std::move(pictures)),
+        is_black_(at == config::Viewpoint::second),
+        image_(width_px, height_px) {}
 
   /// The frame that shows the picture of this time, CLOCK_MONOTONIC, lit at `target_ns`; null if
   /// there is none. Valid until the next call. A picture of another size than the projector's is
@@ -27,6 +32,7 @@ class TestPictures {
   void mirror(config::Flip flip);
 
   ipc::Reader<msg::TestPicture> pictures_;
+  bool is_black_;  ///< whatever the picture is
   renderer::Texture image_;
   config::Flip flip_ = config::Flip::none;  ///< of image_
   renderer::Frame frame_;

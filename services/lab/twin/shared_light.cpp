@@ -26,6 +26,23 @@ Rect bounds_of(const TrueView& view) {
   return area.overlap(view.screen());
 }
 
+/// The barycentrics of a pixel in the triangle that it shows.
+glm::vec3 share_at(const SeenHand& hand, Surface surface, glm::ivec2 px) {
+  return barycentrics(hand.screen, hand.truth->mesh.triangles[triangle_of(surface)],
+                      static_cast<float>(px.x), static_cast<float>(px.y));
+}
+
+/// Skin in this light and a little of the room's, RGBA8.
+std::uint32_t skin_in(const glm::vec3& light) {
+  constexpr float kRoom = 0.02f, kSkin = 0.85f;  // light of the room, reflectance
+  std::uint32_t pixel = 0xff000000u;
+  for (int c = 0; c < 3; ++c) {
+    const float level = renderer::fast_srgb_level(std::min(1.0f, kSkin * (kRoom + light[c])));
+    pixel |= static_cast<std::uint32_t>(std::lround(255 * level)) << (8 * c);
+  }
+  return pixel;
+}
+
 nlohmann::json percentiles(const Samples& values,
                            std::initializer_list<std::pair<const char*, double>> shares) {
   nlohmann::json json;
@@ -73,12 +90,8 @@ std::optional<glm::vec3> SharedJudge::displacement(const Beam& beam, const Judge
     return std::nullopt;
   const Surface surface = beam.view.surface().at(shown_px.x, shown_px.y);
   if (!is_hand(surface) || hand_of(surface) != hand) return std::nullopt;
-  const auto& triangle = seen.truth->mesh.triangles[triangle_of(surface)];
-  const glm::vec3 share = barycentrics(seen.screen, triangle, static_cast<float>(shown_px.x),
-                                       static_cast<float>(shown_px.y));
-  glm::vec3 there_m(0);
-  for (int c = 0; c < 3; ++c) there_m += share[c] * seen.position_m[triangle[c]];
-  return beam.texture.at(seen.side, shown->uv).seen_m - there_m;
+  return beam.texture.at(seen.side, shown->uv).seen_m -
+         point_of(seen, surface, share_at(seen, surface, shown_px));
 }
 
 void SharedJudge::add_hand(std::size_t hand, const std::array<JudgedLight, 2>& lights) {
@@ -128,42 +141,30 @@ nlohmann::json SharedJudge::to_json() const {
           {"apart_mm", std::move(apart)}};
 }
 
+/// The light of a projector on a point of a hand.
+glm::vec3 SharedJudge::light_on(const Beam& beam, Surface surface, const glm::vec3& share) {
+  if (hand_of(surface) >= beam.view.hands().size()) return glm::vec3(0);
+  const auto px = beam.view.lit_by(point_of(beam.view.hands()[hand_of(surface)], surface, share));
+  return px ? JudgedLight(*beam.projection).colour_at(px->x, px->y) : glm::vec3(0);
+}
+
 renderer::View<const std::uint32_t> SharedJudge::picture() {
-  constexpr float kRoom = 0.02f, kSkin = 0.85f;  // light of the room, reflectance
   const int width = eye_.screen().x1, height = eye_.screen().y1;
   picture_ = renderer::Image<std::uint32_t>(3 * width, height, 0xff1a1a1au);
+  if (!beams_[0].projection) return picture_.view();
   eye_.pose(beams_[0].projection->lit_ns);
   const Rect area = bounds_of(eye_);
   eye_.draw(area);
-  const auto lit = [&](const Beam& beam, Surface surface, const glm::vec3& share) {
-    glm::vec3 light(0);
-    if (hand_of(surface) >= beam.view.hands().size()) return light;
-    const SeenHand& hand = beam.view.hands()[hand_of(surface)];
-    glm::vec3 place_m(0);
-    const auto& triangle = hand.truth->mesh.triangles[triangle_of(surface)];
-    for (int c = 0; c < 3; ++c) place_m += share[c] * hand.position_m[triangle[c]];
-    const auto px = beam.view.lit_by(place_m);
-    return px ? JudgedLight(*beam.projection).colour_at(px->x, px->y) : light;
-  };
   for (int y = area.y0; y < area.y1; ++y)
     for (int x = area.x0; x < area.x1; ++x) {
       const Surface surface = eye_.surface().at(x, y);
       if (!is_hand(surface)) continue;
-      const SeenHand& hand = eye_.hands()[hand_of(surface)];
-      const glm::vec3 share =
-          barycentrics(hand.screen, hand.truth->mesh.triangles[triangle_of(surface)],
-                       static_cast<float>(x), static_cast<float>(y));
-      const auto first = lit(beams_[0], surface, share), second = lit(beams_[1], surface, share);
-      int column = x;
-      for (const auto& light : {first, second, first + second}) {
-        std::uint32_t pixel = 0xff000000u;
-        for (int c = 0; c < 3; ++c) {
-          const float level = renderer::fast_srgb_level(std::min(1.0f, kSkin * (kRoom + light[c])));
-          pixel |= static_cast<std::uint32_t>(std::lround(255 * level)) << (8 * c);
-        }
-        picture_.at(column, y) = pixel;
-        column += width;
-      }
+      const auto share = share_at(eye_.hands()[hand_of(surface)], surface, {x, y});
+      const auto first = light_on(beams_[0], surface, share),
+                 second = light_on(beams_[1], surface, share);
+      picture_.at(x, y) = skin_in(first);
+      picture_.at(x + width, y) = skin_in(second);
+      picture_.at(x + 2 * width, y) = skin_in(first + second);
     }
   return picture_.view();
 }

@@ -41,7 +41,8 @@ class SharedJudge {
   nlohmann::json to_json() const;
 
   /// The hands of the last moment as the camera sees them, RGBA8: with the light of the first
-  /// projector, of the second one, and of both. Valid until the next call.
+  /// projector, of the second one, and of both. Dark before the first moment. Valid until the next
+  /// call.
   renderer::View<const std::uint32_t> picture();
 
  private:
@@ -56,6 +57,7 @@ class SharedJudge {
   static void take(Beam& beam, const msg::Projection& projection);
   static std::optional<glm::vec3> displacement(const Beam& beam, const JudgedLight& light,
                                                std::size_t hand, std::size_t vertex);
+  static glm::vec3 light_on(const Beam& beam, Surface surface, const glm::vec3& share);
   void add_hand(std::size_t hand, const std::array<JudgedLight, 2>& lights);
   void add_light(std::size_t vertex, const std::array<float, 2>& light);
 

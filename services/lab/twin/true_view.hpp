@@ -41,6 +41,12 @@ struct SeenHand {
   ScreenVertices arm;                             ///< the forearm's vertices
 };
 
+/// The point of a surface of a hand with these barycentrics in its triangle, camera space, m.
+inline glm::vec3 point_of(const SeenHand& hand, Surface surface, const glm::vec3& share) {
+  const auto& [i, j, k] = hand.truth->mesh.triangles[triangle_of(surface)];
+  return share.x * hand.position_m[i] + share.y * hand.position_m[j] + share.z * hand.position_m[k];
+}
+
 /// The true hands at one time, drawn into the image of a projector as it really is. Reuses its
 /// buffers. One thread.
 class TrueView {

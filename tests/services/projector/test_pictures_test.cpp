@@ -48,6 +48,16 @@ TEST_F(TestPicturesTest, APictureFillsTheScreenWithItsLevels) {
   EXPECT_TRUE(frame->hands.empty());
 }
 
+TEST_F(TestPicturesTest, ASecondProjectorIsBlackWhileTheFirstShowsOne) {
+  TestPictures second(*ipc::Reader<msg::TestPicture>::attach(again()), kWidth_px, kHeight_px,
+                      config::Viewpoint::second);
+  EXPECT_EQ(second.at(now_ns(), kTarget_ns), nullptr);
+  publish(5, 0x40, kWidth_px + 1);
+  const auto* frame = second.at(now_ns(), kTarget_ns);
+  ASSERT_NE(frame, nullptr) << "a picture of the first one's size";
+  EXPECT_EQ(frame->colour.at(kWidth_px - 1, kHeight_px - 1), 0xff000000u);
+}
+
 TEST_F(TestPicturesTest, TheTimeOfAPictureIsMarkedAsThatOfAFrame) {
   publish(5, 0x40);
   const auto begin_ns = now_ns();
