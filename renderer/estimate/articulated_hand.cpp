@@ -54,8 +54,9 @@ Flexions flexions_of(const HandJoints& joints) {
     const auto bone_m = [&](int i) { return joints.at_m[chain[i + 1]] - joints.at_m[chain[i]]; };
     // The angle at the thumb's root is its place on the hand.
     for (int i = finger == 0 ? 1 : 0; i < kBendsOfFinger; ++i)
-      flexions[finger][i] = std::atan2(glm::length(glm::cross(bone_m(i), bone_m(i + 1))),
-                                       glm::dot(bone_m(i), bone_m(i + 1)));  // 0 without a bone
+      flexions[finger][i] = std::atan2(
+          glm::dot(glm::cross(bone_m(i), bone_m(i + 1)), bend_axis(joints, chain[i + 1])),
+          glm::dot(bone_m(i), bone_m(i + 1)));  // 0 without a bone
   }
   return flexions;
 }

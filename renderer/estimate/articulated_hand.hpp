@@ -22,8 +22,8 @@ HandJoints in_camera(const calib::Calibration& calibration, const msg::HandPose&
 msg::HandPose in_tracker(const calib::Calibration& calibration, const HandJoints& joints,
                          msg::HandPose pose);
 
-/// By how much the joints of each finger are bent, from knuckle to tip, rad; of the thumb, the
-/// lowest is 0.
+/// By how much the joints of each finger are bent, from knuckle to tip, rad; less than 0 if they
+/// are bent backwards. Of the thumb, the lowest is 0.
 using Flexions = std::array<std::array<double, kBendsOfFinger>, kFingers>;
 Flexions flexions_of(const HandJoints& joints);
 

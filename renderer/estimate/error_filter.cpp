@@ -48,7 +48,7 @@ void ErrorFilter::begin() {
   for_priors(usual_sigma_m_, [this](const ErrorPrior& prior) { set_variance(prior); });
   for (int finger = 0; finger < kFingers; ++finger) add_bends(finger, 1);
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
-    set_variance(seen_prior(landmark, sigma_px_[landmark]));
+    set_variance(seen_prior(landmark, sigma_px_[landmark], seen_s_));
 }
 
 HandErrors ErrorFilter::kept_after(double seconds) const {
@@ -64,7 +64,7 @@ HandErrors ErrorFilter::kept_after(double seconds) const {
   fade({error::kBend, kFingers * kBendsOfFinger, std::hypot(kSharedBend_rad, kOwnBend_rad),
         kPosture_s});
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
-    fade(seen_prior(landmark, sigma_px_[landmark]), kLasting_s);
+    fade(seen_prior(landmark, sigma_px_[landmark], seen_s_), kLasting_s);
   return kept;
 }
 
@@ -80,7 +80,8 @@ void ErrorFilter::add_bends(int finger, double share) {
   block.diagonal().array() += share * square(kOwnBend_rad);
 }
 
-void ErrorFilter::pass(double seconds, const Flexions& flexions) {
+void ErrorFilter::pass(double seconds, const Flexions& flexions, float rest) {
+  seen_s_ = kSeen_s / (1 - kSeenAtRest * rest);
   auto kept = kept_after(seconds);
   const auto share = as_vector(kept).array();
   as_vector(errors_).array() *= share;
@@ -95,7 +96,16 @@ void ErrorFilter::pass(double seconds, const Flexions& flexions) {
   for (int finger = 0; finger < kFingers; ++finger)
     add_bends(finger, renewed * square(1 + (kFoldedBend - 1) * folded(flexions[finger])));
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
-    add(seen_prior(landmark, sigma_px_[landmark]));
+    add(seen_prior(landmark, sigma_px_[landmark], seen_s_));
+}
+
+void ErrorFilter::unbend(const Flexions& snapped_rad) {
+  for (int finger = 0; finger < kFingers; ++finger)
+    for (int b = 0; b < kBendsOfFinger; ++b) {
+      const auto bend = error::bend_of(finger, b);
+      errors_[bend] -= snapped_rad[finger][b];
+      covariance_.diagonal()[index(bend)] += square(kUnbent * snapped_rad[finger][b]);
+    }
 }
 
 void ErrorFilter::forget_place() {
@@ -247,7 +257,7 @@ bool ErrorFilter::end_errors(AbruptLandmarks& abrupt) {
         errors_px.norm() < kHuber * sigma_px_[landmark])
       continue;
     any = true;
-    end_error(seen_prior(landmark, sigma_px_[landmark]));
+    end_error(seen_prior(landmark, sigma_px_[landmark], seen_s_));
     abrupt[landmark] = Abrupt::neither;
   }
   return any;
@@ -266,7 +276,7 @@ bool ErrorFilter::end_opposite_errors() {
     const double least_px = std::min(seen_px.norm(), drift_px.norm());
     if (least_px < kHuber * sigma_px_[landmark] || (seen_px + drift_px).norm() > least_px) continue;
     any = true;
-    end_error(seen_prior(landmark, sigma_px_[landmark]));
+    end_error(seen_prior(landmark, sigma_px_[landmark], seen_s_));
     end_error({error::drift_of(landmark), 2, kDrift_m, kDrift_s});
   }
   return any;

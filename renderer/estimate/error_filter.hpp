@@ -21,8 +21,11 @@ class ErrorFilter {
   ErrorFilter();
 
   /// Lets time pass: what is known of errors that change becomes less certain. `flexions`: those of
-  /// the tracker's fingers; folded ones hide their errors.
-  void pass(double seconds, const Flexions& flexions);
+  /// the tracker's fingers; folded ones hide their errors. `rest`: see Sighting; a detector errs in
+  /// the same way as long as it sees the same.
+  void pass(double seconds, const Flexions& flexions, float rest);
+  /// The tracker has bent fingers that have not moved: they are as much too bent from now on.
+  void unbend(const Flexions& snapped_rad);
   /// Forgets where the tracker puts the hand and how it bends the fingers, not the person's joints.
   void forget_place();
   /// Adds the landmarks of an image (undistorted px) and the tracker's hand at the same time.
@@ -62,6 +65,7 @@ class ErrorFilter {
   HandErrors errors_{};
   Matrix covariance_;
   std::array<double, kLandmarks> sigma_px_;  ///< of the newest landmarks
+  double seen_s_ = kSeen_s;                  ///< how long its errors last
   double usual_sigma_m_ = 0;                 ///< of the detector, on the hand; 0: nothing was seen
 
   /// Work of an update, by number of a detection: its noise, its distance from what is expected,

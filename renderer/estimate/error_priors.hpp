@@ -38,6 +38,8 @@ struct ErrorPrior {
 /// longer would follow a detector that sees other flesh too small.
 inline constexpr double kLasting_s = 60, kSize_s = 3, kPosture_s = 0.7, kDrift_s = 0.3,
                         kSeen_s = 0.35, kGross_s = 2;
+/// Of a hand at rest, an image shows so little news: those of a detector last as much longer.
+inline constexpr double kSeenAtRest = 0.9;
 
 /// Where the tracker's calibration and its idea of the hand's size put the hand, and the fingers;
 /// where the detector sees rows of joints.
@@ -58,6 +60,9 @@ inline constexpr double kSharedBend_rad = 12 * kDegree, kOwnBend_rad = 6 * kDegr
 inline constexpr double kFoldedBend = 1.5;
 /// Of a joint, for a moment. Trackers err by less; this also holds what bends cannot explain.
 inline constexpr double kDrift_m = 7e-3;
+
+/// Of a finger that the tracker alone has bent, the bend is uncertain by this share of it.
+inline constexpr double kUnbent = 0.3;
 
 /// Landmarks of images that are closer than this say the same.
 inline constexpr std::int64_t kShortest_ns = 9'000'000;
@@ -90,8 +95,8 @@ void for_priors(double sigma_m, const Visit& visit) {
 }
 
 /// The prior of a landmark's error, px.
-inline ErrorPrior seen_prior(int landmark, double sigma_px) {
-  return {error::seen_of(landmark), 2, sigma_px, kSeen_s};
+inline ErrorPrior seen_prior(int landmark, double sigma_px, double lasts_s) {
+  return {error::seen_of(landmark), 2, sigma_px, lasts_s};
 }
 
 /// 0 for a finger that is open, 1 for one that is folded.

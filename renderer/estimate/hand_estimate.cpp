@@ -34,9 +34,12 @@ void HandEstimate::look_back(const HandTrack& track) {
   const auto pose = track.recent_pose(origin_ns);
   if (!pose || origin_ns < track.begins_ns()) return;
   const auto reported = in_camera(calibration_, *pose);
-  const auto abrupt = abruptness_.add(origin_ns, landmarks_px(reported), points_px(seen));
+  const auto seen_px = points_px(seen);
+  const auto abrupt =
+      abruptness_.add({origin_ns, landmarks_px(reported), seen_px, flexions_of(reported)});
+  rest_share_ = rest_.add(origin_ns, seen_px);
   last_ns_ = origin_ns;
-  if (known_->add(calibration_.camera, {origin_ns, reported, seen, abrupt}))
+  if (known_->add(calibration_.camera, {origin_ns, reported, seen, abrupt, rest_share_}))
     explained_ns_ = origin_ns;
   else if (origin_ns - explained_ns_ > kMoved_ns)
     known_->doubt_place();

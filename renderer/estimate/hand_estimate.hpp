@@ -9,6 +9,7 @@
 #include "ipc/msg/landmarks.hpp"
 #include "renderer/estimate/abruptness.hpp"
 #include "renderer/estimate/hand_errors.hpp"
+#include "renderer/estimate/landmark_rest.hpp"
 #include "renderer/predict/hand_track.hpp"
 
 namespace handcast::renderer {
@@ -41,6 +42,8 @@ class HandEstimate {
 
   /// True once landmarks were used, unless the newest ones contradict the tracker.
   bool knows() const;
+  /// Since when the hand has been where it is, and whether it rests there.
+  HandTrack::Rest rest() const { return {explained_ns_, knows() ? rest_share_ : 0}; }
   /// The tracker's hand at a time without its errors. What is known only for a moment fades after
   /// the newest landmarks.
   msg::HandPose corrected(std::int64_t time_ns, const msg::HandPose& reported) const;
@@ -63,6 +66,8 @@ class HandEstimate {
   std::int64_t last_ns_ = 0, explained_ns_ = 0;
   /// @}
   Abruptness abruptness_;
+  LandmarkRest rest_;
+  float rest_share_ = 0;  ///< of the newest landmarks
   std::optional<Waiting> waiting_;
 };
 

@@ -15,9 +15,11 @@ constexpr std::int64_t kApart_ns = 1'000'000'000;
 
 bool KnownErrors::Known::explain(const calib::CameraModel& camera, const Sighting& sighting) {
   if (time_ns != 0)
-    errors.pass(ns_to_seconds(sighting.origin_ns - time_ns), flexions_of(sighting.reported));
+    errors.pass(ns_to_seconds(sighting.origin_ns - time_ns), flexions_of(sighting.reported),
+                sighting.rest);
   time_ns = sighting.origin_ns;
-  return errors.update(camera, sighting.reported, sighting.seen, sighting.abrupt);
+  errors.unbend(sighting.abrupt.snapped_rad);
+  return errors.update(camera, sighting.reported, sighting.seen, sighting.abrupt.landmarks);
 }
 
 bool KnownErrors::add(const calib::CameraModel& camera, const Sighting& sighting) {

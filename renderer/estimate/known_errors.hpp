@@ -13,7 +13,8 @@ struct Sighting {
   std::int64_t origin_ns;
   HandJoints reported;
   msg::HandLandmarks seen;
-  AbruptLandmarks abrupt;
+  AbruptChange abrupt;
+  float rest = 0;  ///< 1: the landmarks rest, 0: they move
 };
 
 /// The estimate of the errors, and what it was some seconds before. A tracker that loses the hand

@@ -119,6 +119,7 @@ void HandPipeline::push(std::int64_t now_ns, std::int64_t origin_ns,
 
 std::optional<HandFrame> HandPipeline::predict(std::int64_t now_ns, std::int64_t target_ns) {
   auto& [motion, light, shape] = states_;
+  motion.track.rest(estimates() ? motion.estimate.rest() : HandTrack::Rest{}, target_ns);
   const auto predicted = motion.track.predict(now_ns, target_ns);
   if (!predicted) {
     light.presence.no_hand(target_ns);
@@ -144,7 +145,8 @@ std::optional<ProjectedPose> HandPipeline::estimated(std::int64_t target_ns,
                                                      const Predicted& predicted) const {
   const auto& estimate = states_.motion.estimate;
   if (!estimates() || predicted.is_silent || !estimate.knows()) return std::nullopt;
-  return project(calibration_, estimate.corrected(target_ns, predicted.posed.pose));
+  const auto time_ns = states_.motion.track.held_ns(target_ns);
+  return project(calibration_, estimate.corrected(time_ns, predicted.posed.pose));
 }
 
 /// The hand on its rung.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/predict/hand_track.hpp"
 
+#include "renderer/base/joint_math.hpp"
 #include "renderer/predict/presence.hpp"
 
 namespace handcast::renderer {
@@ -12,6 +13,29 @@ PoseHistory::Pushed HandTrack::push(std::int64_t now_ns, std::int64_t origin_ns,
   return pushed;
 }
 
+void HandTrack::rest(const Rest& rest, std::int64_t target_ns) {
+  constexpr std::int64_t kLongest_ns = 100'000'000;
+  // Farther than a tracker drifts in 20 ms.
+  constexpr float kDrifts_m = 0.0015f, kMoves_m = 0.004f;
+  rest_ = {};
+  const std::int64_t later_ns = target_ns - rest.since_ns;
+  if (rest.share <= 0 || later_ns <= 0 || later_ns > kLongest_ns) return;
+  const auto then = pose_at(rest.since_ns), now = pose_at(target_ns);
+  if (!then || !now) return;
+  glm::vec3 moved_m{0};
+  for (const int j : kPalmJoints)
+    moved_m += (position(now->joints[j]) - position(then->joints[j])) /
+               static_cast<float>(kPalmJoints.size());
+  const float share = rest.share * (1 - glm::smoothstep(kDrifts_m, kMoves_m, glm::length(moved_m)));
+  rest_ = {rest.since_ns, share};
+}
+
+std::int64_t HandTrack::held_ns(std::int64_t time_ns) const {
+  const std::int64_t later_ns = time_ns - rest_.since_ns;
+  if (rest_.share <= 0 || later_ns <= 0) return time_ns;
+  return time_ns - static_cast<std::int64_t>(rest_.share * static_cast<float>(later_ns));
+}
+
 std::optional<Predicted> HandTrack::predict(std::int64_t now_ns, std::int64_t target_ns) const {
   const auto posed = projected_at(target_ns);
   if (!posed) return std::nullopt;
@@ -20,7 +44,7 @@ std::optional<Predicted> HandTrack::predict(std::int64_t now_ns, std::int64_t ta
 }
 
 std::optional<msg::HandPose> HandTrack::pose_at(std::int64_t time_ns) const {
-  return history_.at(time_ns, Presence::kLongest_ns);
+  return history_.at(held_ns(time_ns), Presence::kLongest_ns);
 }
 
 std::optional<ProjectedPose> HandTrack::projected_at(std::int64_t time_ns) const {

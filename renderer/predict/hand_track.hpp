@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -31,6 +32,18 @@ class HandTrack {
   /// Adds a tracker sample of this hand that was taken at `origin_ns` and arrived at `now_ns`.
   PoseHistory::Pushed push(std::int64_t now_ns, std::int64_t origin_ns, const msg::HandPose& pose);
 
+  /// What an image shows of a hand's motion.
+  struct Rest {
+    std::int64_t since_ns = 0;  ///< exposure of the image
+    float share = 0;            ///< 1: the hand rests, 0: it moves
+  };
+  /// A hand that rests stays where it was seen, whatever its tracker's drift and noise predict for
+  /// `target_ns`: from now on, poses of later times are of less late ones, unless the tracker
+  /// reports that the palm moves.
+  void rest(const Rest& rest, std::int64_t target_ns);
+  /// The time whose pose is that at `time_ns`.
+  std::int64_t held_ns(std::int64_t time_ns) const;
+
   /// The hand at `target_ns`. Empty if projected_at() is.
   std::optional<Predicted> predict(std::int64_t now_ns, std::int64_t target_ns) const;
 
@@ -41,7 +54,8 @@ class HandTrack {
   std::optional<ProjectedPose> projected_at(std::int64_t time_ns) const;
   /// P of projected_at(); empty if there is none.
   std::optional<LandmarkPoints> landmarks_at(std::int64_t time_ns) const;
-  /// The same as pose_at(), but empty if the newest sample is more than 0.2 s older.
+  /// The same as pose_at() of a hand that moves, but empty if the newest sample is more than 0.2 s
+  /// older.
   std::optional<msg::HandPose> recent_pose(std::int64_t time_ns) const {
     return history_.at(time_ns);
   }
@@ -50,6 +64,11 @@ class HandTrack {
 
   /// When the tracker last jumped. Poses at earlier times are guesses.
   std::int64_t begins_ns() const { return history_.begins_ns(); }
+  /// The same, or since when the hand is held at rest. A pose before that and one after it do not
+  /// show how the hand moved.
+  std::int64_t comparable_ns() const {
+    return rest_.share > 0 ? std::max(rest_.since_ns, begins_ns()) : begins_ns();
+  }
   /// Time of the newest sample, 0 if there is none. Later poses are predicted.
   std::int64_t newest_ns() const { return history_.newest_ns(); }
 
@@ -58,6 +77,7 @@ class HandTrack {
 
   calib::Calibration calibration_;
   PoseHistory history_;
+  Rest rest_;
   std::int64_t heard_ns_ = 0;  ///< when the newest tracker sample arrived
 };
 

@@ -107,7 +107,7 @@ void LateRegistration::find_hand(const Silhouette& newest, std::span<const Hand>
   const Hand& hand = hands[index];
   Registered& found = last_[static_cast<std::size_t>(hand.side)] = {};
   const Outline* anchor = hand.is_alone ? nullptr : anchor_before(hand.track->newest_ns());
-  if (!anchor || anchor->time_ns < hand.track->begins_ns()) return;
+  if (!anchor || anchor->time_ns < hand.track->comparable_ns()) return;
 
   std::array<HandMotion, msg::kMaxHands> motions;  // that of `hand` first
   std::size_t count = 0;
@@ -131,7 +131,7 @@ void LateRegistration::find_hand(const Silhouette& newest, std::span<const Hand>
 LandmarkPoints LateRegistration::missed(const Hand& hand, std::int64_t target_ns) const {
   const Seen& seen = seen_[static_cast<std::size_t>(hand.side)];
   if (seen.time_ns <= hand.track->newest_ns() || target_ns - seen.time_ns > kFresh_ns) return {};
-  if (hand.is_alone || seen.anchor_ns < hand.track->begins_ns()) return {};
+  if (hand.is_alone || seen.anchor_ns < hand.track->comparable_ns()) return {};
   const auto predicted = hand.track->landmarks_at(seen.time_ns);
   if (!predicted) return {};
   LandmarkPoints moved;

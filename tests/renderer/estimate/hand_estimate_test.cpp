@@ -93,6 +93,23 @@ class Estimate : public ::testing::Test {
     }
     time_ns_ -= kStep_ns;
   }
+  /// The middle finger bent more, by so much at each of its joints.
+  msg::HandPose snapped(const msg::HandPose& pose, float rad) const {
+    HandErrors errors{};
+    for (int b = 0; b < kBendsOfFinger; ++b) errors[error::bend_of(2, b)] = rad;
+    const ArticulatedHand hand(in_camera(calibration_, pose), errors);
+    return in_tracker(calibration_, hand.joints(), pose);
+  }
+  void see(const msg::HandPose& reported, const msg::HandPose& in_image) {
+    report(reported);
+    estimate_.detection(time_ns_, seen(in_image));
+    estimate_.look_back(track_);
+  }
+  /// By how much the last bone of the middle finger is turned.
+  static double turned_deg(const msg::HandPose& a, const msg::HandPose& b) {
+    const auto bone = joint_of_landmark(11);
+    return glm::degrees(angle_between(orientation(a.joints[bone]), orientation(b.joints[bone])));
+  }
   /// Mean distance of the landmarks in the image, px.
   float apart_px(const msg::HandPose& a, const msg::HandPose& b) const {
     const auto one = project_landmarks(calibration_, a).value(),
@@ -241,6 +258,41 @@ TEST_F(Estimate, AFingerThatTheTrackerTakesForAnotherIsWhereTheLandmarksAre) {
   EXPECT_LT(apart_px(corrected(swapped(truth(time_ns_))), truth(time_ns_)), 3);
   follow(0.04, glm::mat4(1));
   EXPECT_LT(apart_px(corrected(truth(time_ns_)), truth(time_ns_)), 2);
+}
+
+TEST_F(Estimate, AFingerThatTheTrackerSnapsStaysBentAsItIs) {
+  follow(1, glm::mat4(1));
+  for (const float snap_rad : {0.3f, 0.f}) {  // there and back
+    for (int i = 0; i < 3; ++i) {
+      time_ns_ += kStep_ns;
+      see(snapped(truth(time_ns_), snap_rad), truth(time_ns_));
+      EXPECT_LT(turned_deg(corrected(snapped(truth(time_ns_), snap_rad)), truth(time_ns_)), 8)
+          << snap_rad << ", image " << i;
+    }
+  }
+}
+
+TEST_F(Estimate, AFingerThatBothSeeBendAbruptlyIsBent) {
+  follow(1, glm::mat4(1));
+  for (int i = 0; i < 3; ++i) {
+    time_ns_ += kStep_ns;
+    const auto bent = snapped(truth(time_ns_), 0.3f);
+    see(bent, bent);
+    EXPECT_LT(turned_deg(corrected(bent), bent), 3) << "image " << i;
+  }
+}
+
+TEST_F(Estimate, AHandRestsWhileItsLandmarksDo) {
+  const auto still = truth(time_ns_);
+  for (int i = 0; i < 100; ++i, time_ns_ += kStep_ns) {
+    report(truth(time_ns_));
+    estimate_.detection(time_ns_, seen(still, 0.2f));
+    estimate_.look_back(track_);
+  }
+  EXPECT_EQ(estimate_.rest().share, 1);
+  EXPECT_EQ(estimate_.rest().since_ns, time_ns_ - kStep_ns);
+  follow(0.3, glm::mat4(1));
+  EXPECT_EQ(estimate_.rest().share, 0);
 }
 
 TEST_F(Estimate, AFingerThatTheDetectorTakesForAnotherStaysWhereTheTrackerIs) {

@@ -29,7 +29,7 @@ class Known : public ::testing::Test {
     Sighting sighting{time_ns_, in_camera(calibration_, pose_), seen_, {}};
     for (int i = 5; i < 9; ++i) {
       sighting.seen.points[i].x_px += beside_px;
-      if (is_abrupt) sighting.abrupt[i] = Abrupt::detector;
+      if (is_abrupt) sighting.abrupt.landmarks[i] = Abrupt::detector;
     }
     EXPECT_TRUE(known_.add(calibration_.camera, sighting));
   }
@@ -90,7 +90,7 @@ TEST_F(Known, ErrorsOfTrackerAndDetectorThatCancelAreForgotten) {
     time_ns_ += 10'000'000;
     Sighting sighting{time_ns_, in_camera(calibration_, pose_), seen_, {}};
     sighting.reported.at_m[joint_of_landmark(8)].x += beside_m;
-    sighting.abrupt[8] = abrupt;
+    sighting.abrupt.landmarks[8] = abrupt;
     EXPECT_TRUE(known_.add(calibration_.camera, sighting));
   };
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));

@@ -47,6 +47,18 @@ class Scene {
     }
     return corrected;
   }
+  /// The tracker snaps a finger aside, and the next landmarks show that the hand rests as it was.
+  RegisteredHand snap() {
+    const std::int64_t origin_ns = track_.newest_ns() + kPeriod_ns, target_ns = now_ns_ + kLeg_ns;
+    msg::HandPose snapped = pose_at(origin_ns);
+    for (std::size_t joint = 13; joint < 16; ++joint) snapped.joints[joint].position_m[0] += 0.01f;
+    track_.push(now_ns_, origin_ns, snapped);
+    track_.rest({origin_ns, 1}, target_ns);
+    tracker_ = track_.predict(now_ns_, target_ns)->posed.landmarks;
+    LandmarkPoints offset_px;
+    for (int i = 0; i < kLandmarks; ++i) offset_px[i] = truth(target_ns)[i] - tracker_[i];
+    return late_.correct({Side::left, &track_, tracker_, offset_px}, target_ns);
+  }
   const LandmarkPoints& tracker() const { return tracker_; }
   const Registered& last() const { return late_.last(Side::left); }
 
@@ -102,6 +114,15 @@ TEST(LateRegistration, AStillHandStaysWhereTheTrackerHasItHoweverFarOffTheMaskIs
     EXPECT_LT(mean_distance(corrected.landmarks, scene.tracker()), 0.01) << now_ns;
     EXPECT_TRUE(scene.last().found);
   }
+}
+
+TEST(LateRegistration, AHandAtRestIsNotMovedByASnapOfItsTrackerThatIsKnown) {
+  Scene scene([](double) { return glm::vec3(0); });
+  scene.run(kNow_ns);
+  ASSERT_TRUE(scene.last().found);
+  const auto corrected = scene.snap();
+  EXPECT_GT(mean_distance(scene.tracker(), scene.truth(kNow_ns)), 0.8);
+  EXPECT_LT(mean_distance(corrected.landmarks, scene.truth(kNow_ns)), 0.1);
 }
 
 TEST(LateRegistration, ASteadyMotionLeavesNothingBehindHoweverLong) {
