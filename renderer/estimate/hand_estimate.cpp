@@ -34,10 +34,9 @@ void HandEstimate::look_back(const HandTrack& track) {
   const auto pose = track.recent_pose(origin_ns);
   if (!pose || origin_ns < track.begins_ns()) return;
   const auto reported = in_camera(calibration_, *pose);
-  const auto seen_px = points_px(seen);
   const auto abrupt =
-      abruptness_.add({origin_ns, landmarks_px(reported), seen_px, flexions_of(reported)});
-  rest_share_ = rest_.add(origin_ns, seen_px);
+      abruptness_.add({origin_ns, landmarks_px(reported), points_px(seen), flexions_of(reported)});
+  rest_share_ = rest_.add(origin_ns, seen);
   last_ns_ = origin_ns;
   if (known_->add(calibration_.camera, {origin_ns, reported, seen, abrupt, rest_share_}))
     explained_ns_ = origin_ns;

@@ -3,10 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace handcast::renderer {
 namespace {
+
+msg::HandLandmarks seen(float x_px) {
+  msg::HandLandmarks seen;
+  seen.points.fill({x_px, 200, 1, 2});
+  return seen;
+}
 
 /// What is said of landmarks that have moved at a speed for half a second, seen every 10 ms with
 /// noise.
@@ -16,10 +23,10 @@ float rest_after_moving(float px_s, float noise_px) {
   LandmarkRest rest;
   float share = 0;
   for (int image = 0; image <= 50; ++image) {
-    LandmarkPoints seen_px;
-    for (auto& point : seen_px)
-      point = {300 + px_s * 0.01f * static_cast<float>(image) + noise(random), 200 + noise(random)};
-    share = rest.add(1'000'000'000 + 10'000'000LL * image, seen_px);
+    const float moved_px = px_s * 0.01f * static_cast<float>(image);
+    auto noisy = seen(300 + moved_px);
+    for (auto& point : noisy.points) point.x_px += noise(random), point.y_px += noise(random);
+    share = rest.add(1'000'000'000 + 10'000'000LL * image, noisy);
   }
   return share;
 }
@@ -34,9 +41,23 @@ TEST(LandmarkRest, SlowOnesRestByAPart) {
 }
 
 TEST(LandmarkRest, TheFirstImageShowsNoRest) {
-  LandmarkPoints seen_px;
-  seen_px.fill({300, 200});
-  EXPECT_EQ(LandmarkRest().add(1'000'000'000, seen_px), 0);
+  EXPECT_EQ(LandmarkRest().add(1'000'000'000, seen(300)), 0);
+}
+
+TEST(LandmarkRest, LandmarksThatAreNotSeenDoNotCountAndFewAreNoRest) {
+  LandmarkRest rest;
+  auto partly = seen(300);
+  const auto hide = [&partly](int first, int end) {
+    for (int i = first; i < end; ++i)
+      partly.points[i] = {std::numeric_limits<float>::quiet_NaN(), 0, 0, 0};
+  };
+  hide(0, 10);
+  float share = 0;
+  std::int64_t time_ns = 1'000'000'000;
+  for (int image = 0; image < 100; ++image) share = rest.add(time_ns += 10'000'000, partly);
+  EXPECT_EQ(share, 1);
+  hide(10, 11);
+  EXPECT_EQ(rest.add(time_ns += 10'000'000, partly), 0);
 }
 
 }  // namespace
