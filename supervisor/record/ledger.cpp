@@ -17,6 +17,11 @@ double per_second(std::uint64_t count, std::int64_t span_ns) {
   return span_ns > 0 ? static_cast<double>(count) / ns_to_seconds(span_ns) : 0.0;
 }
 
+/// "draw", or "draw2" of the second instance of a program.
+std::string name_of(std::size_t stage, std::string_view service) {
+  return std::string(msg::kStageNames[stage]) + (service.ends_with('2') ? "2" : "");
+}
+
 }  // namespace
 
 void FrameCount::add(const msg::Header& frame, std::uint64_t missed) {
@@ -72,7 +77,7 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
     const auto& mark = marks.marks[i];
     const auto stage = static_cast<std::size_t>(mark.stage);
     if (stage >= msg::kStageNames.size()) continue;  // values from shared memory may be invalid
-    stages_[std::string(msg::kStageNames[stage])].add(mark.end_ns, mark.end_ns - mark.begin_ns);
+    stages_[name_of(stage, service)].add(mark.end_ns, mark.end_ns - mark.begin_ns);
     if (const auto note = msg::light_note_in(mark.detail); note && mark.stage == msg::Stage::light)
       light_.add(*note);
     if (mark.stage == msg::Stage::capture) lost_images_.add(msg::losses_in(mark.detail));

@@ -79,7 +79,7 @@ class Ledger {
 
   /// The frames of a service; zeros if it is unknown.
   const FrameCount& frames(std::string_view service) const;
-  /// The times of each stage, by its name.
+  /// The times of each stage, by its name: "draw", and "draw2" of the second instance of a program.
   const std::map<std::string, StageTimes, std::less<>>& stages() const { return stages_; }
   /// Number of drawn hands that got each rung of the ladder, by msg::Rung.
   const std::array<std::uint64_t, msg::kRungs>& rungs() const { return rungs_; }

@@ -57,6 +57,15 @@ TEST(Ledger, TheRungsOfAFramesHandsAreCounted) {
   EXPECT_EQ(ledger.rungs(), (std::array<std::uint64_t, msg::kRungs>{1, 0, 0, 0, 0, 0, 1}));
 }
 
+TEST(Ledger, TheStagesOfASecondProjectorAreCountedForThemselves) {
+  Ledger ledger;
+  ledger.add("projector", frame_at(kOneSecond_ns, kMs));
+  ledger.add("projector2", frame_at(kOneSecond_ns, 4 * kMs));
+  ASSERT_EQ(ledger.stages().size(), 2u);
+  EXPECT_NEAR(ledger.stages().at("draw").whole_run().percentile_ns(0.5), 1e6, 5e4);
+  EXPECT_NEAR(ledger.stages().at("draw2").whole_run().percentile_ns(0.5), 4e6, 2e5);
+}
+
 TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
   Ledger ledger;
   EXPECT_FALSE(ledger.light().source);
