@@ -81,6 +81,7 @@ class Time:
 
 def times_of(columns, stages):
     """Pairs of a stage and its bars, for the stages of which any column has a time. `columns`: pairs of a name and a source."""
+    stages = [name for stage in stages for name in (stage, stage + "2")]  # of a second projector or camera
     known = [stage for stage in stages if any(source.number("stage_us", stage, "p50") is not None for _, source in columns)]
     full = max([1, *(1.35 * (source.number("stage_us", stage, "p50") or 0) for stage in known for _, source in columns)])
 
