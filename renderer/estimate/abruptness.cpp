@@ -30,10 +30,11 @@ Abrupt more_abrupt(float tracker_px, float detector_px) {
   return tracker_px > kFollows * detector_px ? Abrupt::tracker : Abrupt::detector;
 }
 
-/// By how much the tracker alone has bent a finger; 0 if it may have moved.
+/// By how much the tracker alone has bent a finger; 0 if it may have moved, or if the detector
+/// could not see that.
 std::array<double, kBendsOfFinger> snapped_rad(const Latest& latest, int finger) {
-  constexpr double kMost_rad_s2 = 2000;  ///< of a finger's joints together
-  constexpr float kNotSeen_px = 6, kFollows = 0.5f;
+  constexpr double kMost_rad_s2 = 2000;             ///< of a finger's joints together
+  constexpr float kLeast_px = 12, kFollows = 0.5f;  // of the three upper landmarks together
   std::array<double, kBendsOfFinger> bent_rad;
   double sum_rad = 0;
   for (int b = 0; b < kBendsOfFinger; ++b) {
@@ -49,7 +50,7 @@ std::array<double, kBendsOfFinger> snapped_rad(const Latest& latest, int finger)
     tracker_px += change_px(&HandGlimpse::tracker_px, latest, first_landmark(finger) + i);
     detector_px += change_px(&HandGlimpse::detector_px, latest, first_landmark(finger) + i);
   }
-  if (detector_px > std::max(kNotSeen_px, kFollows * tracker_px)) return {};
+  if (tracker_px < kLeast_px || detector_px > kFollows * tracker_px) return {};
   return bent_rad;
 }
 
