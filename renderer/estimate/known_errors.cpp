@@ -23,10 +23,15 @@ bool KnownErrors::Known::explain(const calib::CameraModel& camera, const Sightin
 }
 
 bool KnownErrors::add(const calib::CameraModel& camera, const Sighting& sighting) {
-  if (!now_.explain(camera, sighting) && !recall(camera, sighting)) {
-    if (!is_doubtful_ || next_ != 0) return false;
-    now_.errors.forget_place();
-    now_.explain(camera, sighting);
+  if (!now_.explain(camera, sighting)) {
+    // Earlier estimates, and one that is forgotten, are not of the tracker before this change.
+    Sighting unchanged = sighting;
+    unchanged.abrupt.snapped_rad = {};
+    if (!recall(camera, unchanged)) {
+      if (!is_doubtful_ || next_ != 0) return false;
+      now_.errors.forget_place();
+      now_.explain(camera, unchanged);
+    }
   }
   is_doubtful_ = false;
   next_ = 0;
