@@ -16,9 +16,10 @@ namespace {
 class Known : public ::testing::Test {
  protected:
   /// Adds what is seen of the hand now, and the tracker's hand so far to the side.
-  bool add(double aside_m) {
+  bool add(double aside_m, const Flexions& snapped_rad = {}) {
     time_ns_ += 10'000'000;
     Sighting sighting{time_ns_, in_camera(calibration_, pose_), seen_, {}};
+    sighting.abrupt.snapped_rad = snapped_rad;
     for (auto& at_m : sighting.reported.at_m) at_m.x += aside_m;
     return known_.add(calibration_.camera, sighting);
   }
@@ -74,6 +75,17 @@ TEST_F(Known, WhatWasKnownBeforeALossHoldsAfterIt) {
   while (!add(0)) ++sightings;
   EXPECT_LE(sightings, 3);
   EXPECT_LT(std::abs(shift_m()), 0.02);
+}
+
+// The tracker's return is no change that an estimate from before the loss has to undo.
+TEST_F(Known, AnEarlierEstimateIsNotBentBack) {
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));
+  lose_the_hand();
+  Flexions returned_rad{};
+  returned_rad[1].fill(0.4);
+  while (!add(0, returned_rad)) continue;
+  for (int b = 0; b < kBendsOfFinger; ++b)
+    EXPECT_NEAR(known_.errors_at(time_ns_)[error::bend_of(1, b)], 0, 0.02) << b;
 }
 
 TEST_F(Known, AnErrorOfTheDetectorEndsAsAbruptlyAsItBegan) {
