@@ -38,7 +38,7 @@ struct ErrorPrior {
 /// longer would follow a detector that sees other flesh too small.
 inline constexpr double kLasting_s = 60, kSize_s = 3, kPosture_s = 0.7, kDrift_s = 0.3,
                         kSeen_s = 0.35, kGross_s = 2;
-/// Of a hand at rest, an image shows so little news: those of a detector last as much longer.
+/// By this share, a detector's errors change more slowly while a hand rests: it sees the same.
 inline constexpr double kSeenAtRest = 0.9;
 
 /// Where the tracker's calibration and its idea of the hand's size put the hand, and the fingers;

@@ -37,9 +37,9 @@ class HandTrack {
     std::int64_t since_ns = 0;  ///< exposure of the image
     float share = 0;            ///< 1: the hand rests, 0: it moves
   };
-  /// A hand that rests stays where it was seen, whatever its tracker's drift and noise predict for
-  /// `target_ns`: from now on, poses of later times are of less late ones, unless the tracker
-  /// reports that the palm moves.
+  /// A hand that rests stays where it was seen, although the drift and the noise of its tracker
+  /// predict a motion until `target_ns`. From now on, pose_at() of a later time is that of
+  /// held_ns(), unless the tracker moves the palm by more than a drift.
   void rest(const Rest& rest, std::int64_t target_ns);
   /// The time whose pose is that at `time_ns`.
   std::int64_t held_ns(std::int64_t time_ns) const;
