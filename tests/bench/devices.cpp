@@ -3,6 +3,8 @@
 //   bench_devices [--goals FILE] [PART...]
 #include "tests/bench/devices.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands to a DLP controller of which one in ten meets a fault, through the real hidapi.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <random>

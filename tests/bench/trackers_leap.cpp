@@ -3,6 +3,7 @@
 //   bench_trackers_leap [--goals FILE] [--seconds N] [--faults N] [--priority N]
 // The captures, and the emulation, which stands for hardware, have the real-time priority that
 // docs/operating/cameras.md recommends for the camera's service, if it is permitted; 0: none.
+#include <fmt/format.h>
 #include <malloc.h>
 #include <sched.h>
 

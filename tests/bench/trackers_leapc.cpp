@@ -3,6 +3,7 @@
 // handed a frame over to the end of its publication. The library is a stand-in that makes frames at
 // a fixed rate; the two trackers of a pair are measured beside one.
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <cstdlib>
 #include <string>

@@ -74,4 +74,7 @@ must_catch 'may only be included by calib/solve/board/, calib/solve/lens/, calib
 # Two types of one name, which the linker cannot tell apart.
 must_catch 'handcast::calib::Pose is also defined in' \
   calib/solve/tracker/planted.hpp $'namespace handcast::calib {\nstruct Pose {};\n}  // namespace handcast::calib'
+# The last one: its folder makes the copy a whole checkout.
+must_catch 'tests/planted_test.cpp: EXPECT_THAT(...) needs #include <gmock/...>' \
+  tests/planted_test.cpp 'TEST(Planted, Test) { EXPECT_THAT(1, Eq(1)); }'
 echo "all planted breaches were caught"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two rigs on two computers: the far one draws from the near one's tracker.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The night watch of a rig: light by the hours, one alert for a fault and one for its end, and a
 // black box.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the X server blanks the screen while light comes from a window.
-#include <X11/extensions/scrnsaver.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "ipc/base/clock.hpp"
 #include "renderer/window/window.hpp"
 #include "tests/display_server.hpp"
+// clang-format off
+#include <X11/extensions/scrnsaver.h>  // last: it defines None
+// clang-format on
 
 namespace handcast::renderer {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/camera.hpp"
 
+#include <gmock/gmock.h>
+
 #include "ipc/msg/owned.hpp"
 #include "tests/services/camera/camera_contract.hpp"
 #include "tests/services/guest_ring.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The contract of the pose back ends that need no device, and tests of single ones.
+#include <gmock/gmock.h>
+
 #include <vector>
 
 #include "tests/services/guest_ring.hpp"

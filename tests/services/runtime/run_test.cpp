@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Daemons of a few lines, run in a process of their own, judged by their exit codes and last words.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <stdlib.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The study on a screen: a real X server, a real window, and a simulated subject.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/services/studies/study_on_screen.hpp"

@@ -2,6 +2,7 @@
 // What becomes of a service: no process, no clock but the test's.
 #include "supervisor/life/next.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/supervisor/life/state_text.hpp"

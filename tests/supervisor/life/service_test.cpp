@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The processes of a service over their lives.
+#include <gmock/gmock.h>
 #include <sys/mman.h>
 
 #include "ipc/msg/hand_poses.hpp"

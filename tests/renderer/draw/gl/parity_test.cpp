@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The painter gl beside the painter cpu, after each pass, on hands from all built-in motions.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A controller while all goes well, and what is refused.
+#include <gmock/gmock.h>
+
 #include <fstream>
 
 #include "services/camera/leap/controller.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A controller that fails, and comes back.
+#include <gmock/gmock.h>
+
 #include "tests/services/camera/leap/leap_test.hpp"
 
 namespace handcast::camera {

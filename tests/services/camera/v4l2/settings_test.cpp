@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is asked from a webcam before it streams.
+#include <gmock/gmock.h>
+
 #include <cerrno>
 
 #include "ipc/base/log.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A webcam while it streams.
+#include <gmock/gmock.h>
+
 #include <cerrno>
 
 #include "renderer/media/jpeg.hpp"

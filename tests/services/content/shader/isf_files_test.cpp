@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the files do that people exchange: old versions of ISF and GLSL, and odd habits.
+#include <gmock/gmock.h>
+
 #include "tests/services/content/shader/shader_test.hpp"
 
 namespace handcast::test {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who may do what.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include "tests/services/desk/page/open_page.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clients that want to harm.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <atomic>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page for other computers: encrypted, and opened by a code.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include <fstream>

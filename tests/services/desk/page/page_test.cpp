@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an open page is told, and what its changes do.
+#include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "ipc/msg/camera_frame.hpp"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is started from the page, and what it is told of recordings, cues, calibration and MIDI.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 

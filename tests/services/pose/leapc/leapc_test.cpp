@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The back end `leapc` on a stand-in for Ultraleap's library.
+#include <gmock/gmock.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <glm/gtc/quaternion.hpp>
