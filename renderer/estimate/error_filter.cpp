@@ -16,6 +16,10 @@ constexpr double kNotSeen_px = 1e4;
 constexpr double square(double x) { return x * x; }
 constexpr Eigen::Index index(std::size_t error) { return static_cast<Eigen::Index>(error); }
 
+/// Of each bend, without what those of a finger share.
+const ErrorPrior kBendPrior{error::kBend, kFingers* kBendsOfFinger,
+                            std::hypot(kSharedBend_rad, kOwnBend_rad), kPosture_s};
+
 /// Errors as a vector of Eigen.
 auto as_vector(HandErrors& errors) { return Eigen::Map<Eigen::VectorXd>(errors.data(), kErrors); }
 
@@ -61,8 +65,7 @@ HandErrors ErrorFilter::kept_after(double seconds) const {
       kept[i] = std::abs(errors_[i]) > kHuber * prior.sd ? gross : usual;
   };
   for_priors(usual_sigma_m_, [&](const ErrorPrior& prior) { fade(prior); });
-  fade({error::kBend, kFingers * kBendsOfFinger, std::hypot(kSharedBend_rad, kOwnBend_rad),
-        kPosture_s});
+  fade(kBendPrior);
   for (int landmark = 0; landmark < kLandmarks; ++landmark)
     fade(seen_prior(landmark, sigma_px_[landmark], seen_s_), kLasting_s);
   return kept;
@@ -340,6 +343,19 @@ void ErrorFilter::reduce_covariance() {
   root_.matrixL().solveInPlace(whitened_);
   covariance_.selfadjointView<Eigen::Lower>().rankUpdate(whitened_.transpose(), -1);
   covariance_.triangularView<Eigen::StrictlyUpper>() = covariance_.transpose();
+}
+
+double ErrorFilter::surprise() const {
+  double sum = 0;
+  const auto add = [&](const ErrorPrior& prior) {
+    for (std::size_t i = prior.first; i < prior.first + static_cast<std::size_t>(prior.count); ++i)
+      sum += square(errors_[i] / prior.sd);
+  };
+  for_priors(usual_sigma_m_, add);
+  add(kBendPrior);
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    add(seen_prior(landmark, sigma_px_[landmark], seen_s_));
+  return sum;
 }
 
 HandErrors ErrorFilter::errors_after(double seconds) const {

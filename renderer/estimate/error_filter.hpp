@@ -33,6 +33,10 @@ class ErrorFilter {
   bool update(const calib::CameraModel& camera, const HandJoints& reported,
               const msg::HandLandmarks& seen, AbruptLandmarks abrupt);
 
+  /// How unlikely the errors are before anything is seen: the sum of their squares, in the
+  /// variances of their priors.
+  double surprise() const;
+
   /// The tracker's errors that are expected after a time in which nothing is seen.
   HandErrors errors_after(double seconds) const;
 

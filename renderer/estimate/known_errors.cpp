@@ -23,10 +23,14 @@ bool KnownErrors::Known::explain(const calib::CameraModel& camera, const Sightin
 }
 
 bool KnownErrors::add(const calib::CameraModel& camera, const Sighting& sighting) {
-  if (!now_.explain(camera, sighting)) {
-    // Earlier estimates, and one that is forgotten, are not of the tracker before this change.
-    Sighting unchanged = sighting;
-    unchanged.abrupt.snapped_rad = {};
+  // Earlier estimates, and one that is forgotten, are not of the tracker before this change.
+  Sighting unchanged = sighting;
+  unchanged.abrupt.snapped_rad = {};
+  if (2 * std::ranges::count(sighting.abrupt.landmarks, Abrupt::tracker) > kLandmarks)
+    rivals_ = earlier_.size();
+  if (now_.explain(camera, sighting)) {
+    if (rivals_ > 0) compare(camera, unchanged);
+  } else {
     if (!recall(camera, unchanged)) {
       if (!is_doubtful_ || next_ != 0) return false;
       now_.errors.forget_place();
@@ -48,6 +52,17 @@ bool KnownErrors::recall(const calib::CameraModel& camera, const Sighting& sight
   if (!trial_.explain(camera, sighting)) return false;
   std::swap(now_, trial_);
   return true;
+}
+
+/// Compares the estimate with the next earlier one, if the tracker has moved most of the hand
+/// abruptly. Of two that explain a hand, the one with much smaller errors is right.
+void KnownErrors::compare(const calib::CameraModel& camera, const Sighting& sighting) {
+  constexpr double kMuch = 0.25;
+  const Known& known = earlier_[--rivals_];
+  if (known.time_ns == 0) return;
+  trial_ = known;
+  if (trial_.explain(camera, sighting) && trial_.errors.surprise() < kMuch * now_.errors.surprise())
+    std::swap(now_, trial_);
 }
 
 void KnownErrors::remember() {

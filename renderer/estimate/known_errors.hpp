@@ -19,7 +19,8 @@ struct Sighting {
 
 /// The estimate of the errors, and what it was some seconds before. A tracker that loses the hand
 /// little by little misleads the estimate, as each step is likely. When it has the hand again, an
-/// earlier estimate is right. One thread.
+/// earlier estimate is right: the present one contradicts what is seen, or needs larger errors. One
+/// thread.
 class KnownErrors {
  public:
   /// Adds a sighting to the estimate. If that cannot explain it, one of the earlier ones is tried,
@@ -40,11 +41,13 @@ class KnownErrors {
     bool explain(const calib::CameraModel& camera, const Sighting& sighting);
   };
   bool recall(const calib::CameraModel& camera, const Sighting& sighting);
+  void compare(const calib::CameraModel& camera, const Sighting& sighting);
   void remember();
 
   Known now_, trial_;
   std::array<Known, 3> earlier_;  ///< the newest first
   std::size_t next_ = 0;          ///< the earlier one that is tried next; 0 again after the last
+  std::size_t rivals_ = 0;        ///< earlier ones that are still to be compared
   bool is_doubtful_ = false;
 };
 

@@ -16,9 +16,10 @@ namespace {
 class Known : public ::testing::Test {
  protected:
   /// Adds what is seen of the hand now, and the tracker's hand so far to the side.
-  bool add(double aside_m, const Flexions& snapped_rad = {}) {
+  bool add(double aside_m, const Flexions& snapped_rad = {}, Abrupt abrupt = Abrupt::neither) {
     time_ns_ += 10'000'000;
     Sighting sighting{time_ns_, in_camera(calibration_, pose_), seen_, {}};
+    sighting.abrupt.landmarks.fill(abrupt);
     sighting.abrupt.snapped_rad = snapped_rad;
     for (auto& at_m : sighting.reported.at_m) at_m.x += aside_m;
     return known_.add(calibration_.camera, sighting);
@@ -75,6 +76,15 @@ TEST_F(Known, WhatWasKnownBeforeALossHoldsAfterIt) {
   while (!add(0)) ++sightings;
   EXPECT_LE(sightings, 3);
   EXPECT_LT(std::abs(shift_m()), 0.02);
+}
+
+// What lasts would be wrong for longer than the loss.
+TEST_F(Known, OfTwoThatExplainAHandTheOneWithSmallerErrorsIsTaken) {
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));
+  for (int i = 0; i < 150; ++i) ASSERT_TRUE(add(-0.4e-3 * i)) << i;
+  EXPECT_GT(shift_m(), 0.03) << "of 0.06";
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(add(0, {}, i == 0 ? Abrupt::tracker : Abrupt::neither));
+  EXPECT_LT(std::abs(shift_m()), 0.002);
 }
 
 // The tracker's return is no change that an estimate from before the loss has to undo.
