@@ -29,11 +29,14 @@ macro(handcast_package component name section summary description)
   endif()
 endmacro()
 
+if(TARGET handcast-aravis)
+  set(industrial handcast-aravis)
+endif()
 handcast_package(show handcast graphics "light that stays on moving hands"
 "It needs an infrared camera, a hand tracker and a projector, or a digital
 twin of them. This package runs it, by hand or as the service handcast@RIG."
   DEPENDS "systemd | systemd-standalone-sysusers" "systemd | systemd-standalone-tmpfiles"
-  RECOMMENDS handcast-tools fonts-dejavu-core libavdevice59 libegl1 libgl1-mesa-dri
+  RECOMMENDS handcast-tools ${industrial} fonts-dejavu-core libavdevice59 libegl1 libgl1-mesa-dri
   SUGGESTS handcast-bridge handcast-lab python3-handcast xdg-utils)
 handcast_package(tools handcast-tools graphics "light on moving hands: calibration and preview"
 "These are the tools of those who set it up: calibration, preview, templates
@@ -46,6 +49,11 @@ handcast_package(lab handcast-lab science "light on moving hands: simulation and
 reports, a gallery of its looks, studies and games with people."
   NEEDS tools library
   DEPENDS python3:any python3-jinja2 python3-matplotlib python3-opencv)
+if(TARGET handcast-aravis)
+  handcast_package(aravis handcast-aravis graphics "light on moving hands: industrial cameras"
+"With this package its camera is of GigE Vision or USB3 Vision, by Aravis."
+    NEEDS show)
+endif()
 if(HANDCAST_WITH_CYCLONEDDS)
   set(bridge bridge)
   handcast_package(bridge handcast-bridge graphics "light on moving hands: several computers"
@@ -112,7 +120,7 @@ handcast_packaged(python lib/python3/dist-packages scripts/handcast.py)
 # All that is packed.
 add_custom_target(handcast_packages ALL
   DEPENDS ${made_files} ${made}/handcast@.service ${made}/handcast.bash handcast_c handcast_client handcast-film handcast_hands)
-if(TARGET handcast-aravis)
+if(industrial)
   add_dependencies(handcast_packages handcast-aravis)
 endif()
 

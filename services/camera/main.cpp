@@ -126,6 +126,9 @@ static service::Instance instance_at(Viewpoint at) {
   return {describe(at), [at](service::Context& context) { run_camera(context, at); },
           [at](const config::Rig& rig, const calib::Calibration& calibration) {
             return check(rig, calibration, at);
+          },
+          [](const daemon::Search& search) {
+            return service::attached_of_files<camera::CameraBackend>("camera", search);
           }};
 }
 

@@ -13,6 +13,7 @@
 #include "config/settings/setting_list.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/daemon/attached.hpp"
 #include "ipc/daemon/back_end_files.hpp"
 #include "ipc/daemon/description.hpp"
 
@@ -37,6 +38,8 @@ struct Backend {
   /// and leaves devices and services alone, which a running rig may use. Errors: those of open()
   /// that a person must change. Null: it opens the back end, unless that is exclusive.
   Result<void> (*check)(const Args&...) = nullptr;
+  /// The devices that are attached and that it could open. Null: it does not look for any.
+  std::vector<daemon::Attached> (*attached)(const daemon::Search&) = nullptr;
 
   /// Checks it: calls `check`, or else opens it, unless it is exclusive. Errors: theirs.
   Result<void> examine(const Args&... args) const {
@@ -50,7 +53,7 @@ struct Backend {
 /// Backend::check of what is seen only when the rig is up: whether a program sends.
 inline constexpr auto kSeenWhenUp = [](const auto&...) -> Result<void> { return {}; };
 
-inline constexpr daemon::Abi kAbi{"0.1.0-1", sizeof(config::Rig) + sizeof(calib::Calibration)};
+inline constexpr daemon::Abi kAbi{"0.1.0-2", sizeof(config::Rig) + sizeof(calib::Calibration)};
 
 /// What the file of a back end exports, under the name that its seam declares. It calls the
 /// functions of the program.
@@ -67,6 +70,24 @@ Result<const Row*> load_row(std::string_view service, std::string_view name) {
   return daemon::load_back_end(service, name, kAbi).map([](const void* object) {
     return object ? &static_cast<const LoadedBackEnd<Row>*>(object)->row : nullptr;
   });
+}
+
+/// The devices that the back ends of a service find which are files of their own. A file that
+/// cannot be loaded is a device with this trouble, and without names.
+template <class Row>
+std::vector<daemon::Attached> attached_of_files(std::string_view service,
+                                                const daemon::Search& search) {
+  std::vector<daemon::Attached> all;
+  for (const auto& [name, file] : daemon::back_end_files(service)) {
+    const auto row = load_row<Row>(service, name);
+    if (!row)
+      all.push_back({.name = fmt::format("{} '{}'", service, name),
+                     .settings = {{fmt::format("{}.backend", service), name}},
+                     .trouble = row.error().what});
+    if (!row || !*row || !(*row)->attached) continue;
+    for (auto& device : (*row)->attached(search)) all.push_back(std::move(device));
+  }
+  return all;
 }
 
 /// The rows of a table without their code, in its order.

@@ -15,6 +15,7 @@
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/result.hpp"
+#include "ipc/daemon/attached.hpp"
 #include "ipc/daemon/description.hpp"
 #include "ipc/daemon/supervision.hpp"
 #include "ipc/msg/stage_mark.hpp"
@@ -131,6 +132,8 @@ struct Instance {
   daemon::ServiceDescription description;
   std::function<void(Context&)> body;  ///< its work
   Check check{};                       ///< what --check does; null: nothing of its own
+  /// The devices that its back ends find, which --attached prints; null: it has no such option.
+  std::function<std::vector<daemon::Attached>(const daemon::Search&)> attached{};
 };
 
 /// The main function of all daemons: parses the command line, loads the rig and runs the body, or,

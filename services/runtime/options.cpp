@@ -68,6 +68,14 @@ Result<Options> parse_options(std::span<const Instance> instances, int argc,
            "'checked', and ends");
   line.add("--backends", backends, "Prints the back ends of this build, one per line");
   line.add("--describe", describe, "Prints its rings, settings and back ends as JSON");
+  bool attached = false, untouched = false;
+  daemon::Search search;
+  if (instances.front().attached) {
+    line.add("--attached", attached,
+             "Prints the devices that its back ends of lib/handcast find, as JSON");
+    line.add("--named NAME", search.name, "With --attached: what a rig file means by NAME");
+    line.add("--untouched", untouched, "With --attached: opens none of them");
+  }
   line.add(std::string(daemon::kRigOption) + " MARK", mark, "");
   line.add("--try-priority N", priority, "", {1, 99});
   auto text = line.parse(argc, argv);
@@ -78,6 +86,8 @@ Result<Options> parse_options(std::span<const Instance> instances, int argc,
   if (!options.answer && priority > 0) options.answer = try_priority(priority) + "\n";
   if (!options.answer && describe)
     options.answer = daemon::print_description(complete(description));
+  search.opens = !untouched;
+  if (!options.answer && attached) options.answer = to_json(instances.front().attached(search));
   if (options.answer || !options.config_file.empty()) return options;
   return fail(Errc::bad_config,
               "--config FILE is missing; `handcast up FILE` starts this program with a whole rig");

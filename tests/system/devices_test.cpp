@@ -70,6 +70,37 @@ TEST_F(Devices, EachIsListedWithTheSettingsThatUseIt) {
             HasSubstr("displays\n")));
 }
 
+TEST_F(Devices, TheDoctorLooksForTheIndustrialCameraOfTheRig) {
+  const test::FakeCamera gige;
+  ASSERT_TRUE(gige.is_running());
+  const auto camera = [this](const std::string& name) {
+    const auto outcome =
+        handcast({"doctor", "config/rigs/twin.toml", "--json", "--set", "camera.backend=aravis",
+                  "--set", "camera.aravis.device=" + name});
+    for (const auto& finding : nlohmann::json::parse(outcome.output))
+      if (finding["check"] == "camera device") return finding;
+    return nlohmann::json();
+  };
+  for (const auto* name : {"", "GV01", "127.0.0.1"}) {
+    const auto found = camera(name);
+    EXPECT_EQ(found["grade"], "good") << name << found;
+    EXPECT_THAT(found["sentence"].get<std::string>(), HasSubstr("serial number GV01, GigEVision"));
+  }
+  const auto absent = camera("GV99");
+  EXPECT_EQ(absent["grade"], "fault");
+  EXPECT_EQ(absent["sentence"], "there is no camera 'GV99'");
+  EXPECT_THAT(absent["remedy"].get<std::string>(), HasSubstr("GV01"));
+}
+
+TEST_F(Devices, AFileOfABackEndThatCannotBeLoadedIsListedWithItsTrouble) {
+  const auto folder = scratch_.path() / "handcast/camera";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "mine.so") << "this is no library";
+  const Variable place("LD_LIBRARY_PATH", scratch_.path().c_str());
+  EXPECT_THAT(handcast({"devices"}).output,
+              HasSubstr("  camera 'mine'\n    cannot be used: " + (folder / "mine.so").string()));
+}
+
 TEST_F(Devices, TheDoctorLooksAtTheDisplayOfTheRig) {
   const Variable preload("LD_PRELOAD", HANDCAST_EMULATED_DEVICES),
       card("HANDCAST_EMULATED_CARD", "EPSON PJ");

@@ -10,6 +10,7 @@
 
 #include "ipc/base/clock.hpp"
 #include "ipc/base/log.hpp"
+#include "services/camera/aravis/device.hpp"
 #include "services/camera/aravis/pixels.hpp"
 #include "services/camera/aravis/session.hpp"
 #include "services/camera/camera.hpp"
@@ -243,6 +244,6 @@ Result<std::unique_ptr<Camera>> open_camera(const Opening& with) {
 
 // The table has the rest of its row.
 const service::LoadedBackEnd<CameraBackend> handcast_camera_back_end{
-    .row = {.name = "aravis", .open = open_camera}};
+    .row = {.name = "aravis", .open = open_camera, .attached = aravis::attached}};
 
 }  // namespace handcast::camera

@@ -84,28 +84,34 @@ std::vector<Device> list_devices() {
   return devices;
 }
 
-Result<Device> find_device(const std::string& name) {
+std::vector<Device> devices_called(const std::string& name) {
   if (is_address(name) && answers(name))
-    return Device{.id = name,
-                  .serial = "",
-                  .address = name,
-                  .vendor = "",
-                  .model = "",
-                  .protocol = "GigEVision"};
+    return {{.id = name,
+             .serial = "",
+             .address = name,
+             .vendor = "",
+             .model = "",
+             .protocol = "GigEVision"}};
   auto devices = list_devices();
-  if (devices.empty())
-    return fail(Errc::unavailable,
-                "no GigE Vision or USB3 Vision camera is attached, or none answers");
   if (!name.empty())
     std::erase_if(devices, [&](const Device& device) { return !is_called(device, name); });
+  return devices;
+}
+
+Result<Device> find_device(const std::string& name) {
+  const auto devices = devices_called(name);
   if (devices.size() == 1) return devices.front();
-  if (devices.empty())
-    return fail(Errc::unavailable, fmt::format("there is no camera {}, but {}", quote(name),
-                                               describe(list_devices())));
-  return fail(Errc::bad_config,
-              fmt::format("several cameras are attached; set aravis.device to the serial "
-                          "number of one: {}",
-                          describe(devices)));
+  if (!devices.empty())
+    return fail(Errc::bad_config,
+                fmt::format("several cameras are attached; set aravis.device to the serial "
+                            "number of one: {}",
+                            describe(devices)));
+  const auto others = name.empty() ? devices : list_devices();
+  if (others.empty())
+    return fail(Errc::unavailable,
+                "no GigE Vision or USB3 Vision camera is attached, or none answers");
+  return fail(Errc::unavailable,
+              fmt::format("there is no camera {}, but {}", quote(name), describe(others)));
 }
 
 Result<Owned<ArvCamera>> open_device(const Device& device) {
@@ -160,6 +166,55 @@ Result<Sensor> sensor_of(ArvCamera* camera) {
 std::array<std::string, 4> names_of(const Device& device) {
   return {device.serial, device.id, device.address,
           device.model.empty() ? "" : fmt::format("{} {}", device.vendor, device.model)};
+}
+
+namespace {
+
+/// Names without the empty ones.
+std::vector<std::string> known(const std::array<std::string, 4>& names) {
+  std::vector<std::string> those(names.begin(), names.end());
+  std::erase(those, "");
+  return those;
+}
+
+std::string name_of(const Device& device) {
+  if (device.serial.empty()) return "camera " + device.id;
+  return fmt::format("{} {}, serial number {}", device.vendor, device.model, device.serial);
+}
+
+daemon::Attached entry_of(const Device& device) {
+  const auto names = known(names_of(device));
+  return {.kind = daemon::Kind::camera,
+          .name = name_of(device),
+          .about = fmt::format("{} at {}", device.protocol, device.address),
+          .settings = {{"camera.backend", "aravis"}, {"camera.aravis.device", names.front()}},
+          .names = names};
+}
+
+/// Opens the camera, to see whether that is possible and what it can do.
+daemon::Attached look_into(const Device& device) {
+  const auto opened = open_device(device);
+  auto entry = entry_of(opened ? with_its_names(opened->get(), device) : device);
+  if (!opened) {
+    entry.trouble = opened.error().what;
+  } else if (const auto sensor = sensor_of(opened->get())) {
+    entry.modes.push_back({.format = "",
+                           .least_width_px = sensor->least_width_px,
+                           .least_height_px = sensor->least_height_px,
+                           .width_px = sensor->width_px,
+                           .height_px = sensor->height_px,
+                           .rate_hz = sensor->rate_hz});
+  }
+  return entry;
+}
+
+}  // namespace
+
+std::vector<daemon::Attached> attached(const daemon::Search& search) {
+  std::vector<daemon::Attached> all;
+  for (const auto& device : devices_called(search.name))
+    all.push_back(search.opens ? look_into(device) : entry_of(device));
+  return all;
 }
 
 bool Presence::is_there() const {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ipc/daemon/attached.hpp"
 #include "services/camera/aravis/glib.hpp"
 
 namespace handcast::camera::aravis {
@@ -23,9 +24,12 @@ struct Device {
 /// Asks the networks and the USB for cameras, which takes about a second.
 std::vector<Device> list_devices();
 
-/// The camera that `name` means: its serial number, id, address or model; empty: the only one.
-/// Errors: unavailable (no camera, none of this name), bad_config (several fit). The sentence lists
-/// those that are there.
+/// The cameras that `name` means: serial number, id, address or model; empty: all. One that answers
+/// at its address need not be on a network that is asked.
+std::vector<Device> devices_called(const std::string& name);
+
+/// The only camera that `name` means. Errors: unavailable (no camera, none of this name),
+/// bad_config (several fit). The sentence lists those that are there.
 Result<Device> find_device(const std::string& name);
 
 /// Opens a camera. If its address is known, without looking for it. Errors: unavailable (it does
@@ -48,6 +52,9 @@ Result<Sensor> sensor_of(ArvCamera* camera);
 /// What a calibration may call the camera: its serial number, Aravis's name, address, and vendor
 /// with model. Parts that are not known are empty.
 std::array<std::string, 4> names_of(const Device& device);
+
+/// The cameras for `handcast devices` and the doctor. Takes about a second.
+std::vector<daemon::Attached> attached(const daemon::Search& search);
 
 /// Finds out quickly, without Aravis, whether an absent camera has come back.
 class Presence {

@@ -8,7 +8,9 @@ static Result<CameraBackend> load_aravis() {
   const auto row = service::load_row<CameraBackend>("camera", "aravis");
   if (!row) return tl::make_unexpected(row.error());
   if (*row) return **row;
-  return fail(Errc::bad_config, "aravis.so is not installed in lib/handcast/camera");
+  return fail(Errc::bad_config,
+              "aravis.so is not installed in lib/handcast/camera; Debian's package of it is "
+              "handcast-aravis");
 }
 
 Result<std::unique_ptr<Camera>> open_aravis(const Opening& with) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "services/tools/doctor/ask.hpp"
+#include "services/tools/devices/ask.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -13,7 +13,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/unique_fd.hpp"
 
-namespace handcast::doctor {
+namespace handcast::devices {
 namespace {
 
 /// Starts a program, whose descriptor `what` becomes `out`. -1 if it cannot be started.
@@ -67,4 +67,4 @@ std::optional<Answer> ask(std::vector<std::string> words, int what) {
   return answer;
 }
 
-}  // namespace handcast::doctor
+}  // namespace handcast::devices

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace handcast::doctor {
+namespace handcast::devices {
 
 /// What a program answered.
 struct Answer {
@@ -19,4 +19,4 @@ std::string program(const std::string& name);
 /// `what` (STDOUT_FILENO or STDERR_FILENO). Empty if it cannot be started.
 std::optional<Answer> ask(std::vector<std::string> words, int what);
 
-}  // namespace handcast::doctor
+}  // namespace handcast::devices

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "ipc/daemon/back_end_files.hpp"
 #include "services/tools/devices/trackers.hpp"
 
 namespace handcast::devices {
@@ -33,15 +34,6 @@ std::string print(const Attached& device) {
   return text + print(device.settings);
 }
 
-nlohmann::json to_json(const Mode& mode) {
-  return {{"format", mode.format},
-          {"least_width_px", mode.least_width_px},
-          {"least_height_px", mode.least_height_px},
-          {"width_px", mode.width_px},
-          {"height_px", mode.height_px},
-          {"rate_hz", mode.rate_hz}};
-}
-
 std::vector<Attached> joined(std::vector<Attached> first, std::vector<Attached> second) {
   std::move(second.begin(), second.end(), std::back_inserter(first));
   return first;
@@ -50,7 +42,7 @@ std::vector<Attached> joined(std::vector<Attached> first, std::vector<Attached> 
 }  // namespace
 
 std::vector<Attached> attached_of(Kind kind) {
-  if (kind == Kind::camera) return joined(industrial_cameras(), webcams());
+  if (kind == Kind::camera) return joined(cameras_of_files(), webcams());
   if (kind == Kind::tracker) return trackers();
   return kind == Kind::display ? joined(monitors(), connectors()) : controllers();
 }
@@ -62,9 +54,10 @@ std::vector<Attached> all_attached() {
 
 std::vector<std::string> blind_spots() {
   std::vector<std::string> spots;
-#ifndef HANDCAST_WITH_ARAVIS
-  spots.emplace_back("GigE Vision and USB3 Vision cameras (libaravis-dev)");
-#endif
+  if (!daemon::back_end_files("camera").contains("aravis"))
+    spots.emplace_back(
+        "GigE Vision and USB3 Vision cameras (package handcast-aravis, or a build with "
+        "libaravis-dev)");
 #ifndef HANDCAST_WITH_WINDOW
   spots.emplace_back("monitors of the window system (libglfw3-dev libopengl-dev libxrandr-dev)");
 #endif
@@ -96,28 +89,9 @@ std::string print(const std::vector<Attached>& attached,
     if (kind != static_cast<std::size_t>(Kind::tracker)) continue;
     for (const auto& sentence : missing_trackers) text += fmt::format("  without {}\n", sentence);
   }
-  for (const auto& spot : blind_spots) text += fmt::format("this build cannot see {}\n", spot);
+  for (const auto& spot : blind_spots)
+    text += fmt::format("this installation cannot see {}\n", spot);
   return text;
-}
-
-std::string to_json(const std::vector<Attached>& attached) {
-  auto list = nlohmann::json::array();
-  for (const auto& device : attached) {
-    auto settings = nlohmann::json::object();
-    for (const auto& [setting, value] : device.settings) settings[setting] = value;
-    auto modes = nlohmann::json::array();
-    for (const auto& mode : device.modes) modes.push_back(to_json(mode));
-    list.push_back({{"kind", kKindNames[static_cast<std::size_t>(device.kind)]},
-                    {"name", device.name},
-                    {"about", device.about},
-                    {"settings", settings},
-                    {"trouble", device.trouble},
-                    {"names", device.names},
-                    {"modes", modes},
-                    {"is_operators", device.is_operators}});
-  }
-  // A device may call itself anything.
-  return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace handcast::devices

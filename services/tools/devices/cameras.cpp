@@ -1,62 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
 
 #include "services/camera/v4l2/format.hpp"
 #include "services/camera/v4l2/list.hpp"
+#include "services/tools/devices/ask.hpp"
 #include "services/tools/devices/attached.hpp"
-#ifdef HANDCAST_WITH_ARAVIS
-#include "services/camera/aravis/device.hpp"
-#endif
 
 namespace handcast::devices {
 
-#ifdef HANDCAST_WITH_ARAVIS
-namespace {
-
-/// Names without the empty ones.
-std::vector<std::string> known(const std::array<std::string, 4>& names) {
-  std::vector<std::string> those(names.begin(), names.end());
-  std::erase(those, "");
-  return those;
+std::vector<Attached> cameras_of_files(const Search& search, const std::string& file) {
+  std::vector<std::string> words{program("handcast-camera"), "--attached"};
+  if (!search.name.empty()) words.push_back("--named=" + search.name);
+  if (!search.opens) words.emplace_back("--untouched");
+  const auto answer = ask(std::move(words), STDOUT_FILENO);
+  auto found = answer ? daemon::attached_from(answer->text).value_or(std::vector<Attached>())
+                      : std::vector<Attached>();
+  if (!file.empty())
+    std::erase_if(found, [&](const Attached& camera) {
+      return std::ranges::count(camera.settings,
+                                std::pair<std::string, std::string>("camera.backend", file)) == 0;
+    });
+  return found;
 }
-
-/// Opens the camera, to see whether that is possible and what it can do.
-void look_into(const camera::aravis::Device& device, Attached& entry) {
-  const auto opened = camera::aravis::open_device(device);
-  if (!opened) {
-    entry.trouble = opened.error().what;
-    return;
-  }
-  const auto sensor = camera::aravis::sensor_of(opened->get());
-  if (!sensor) return;
-  entry.modes.push_back({.format = "",
-                         .least_width_px = sensor->least_width_px,
-                         .least_height_px = sensor->least_height_px,
-                         .width_px = sensor->width_px,
-                         .height_px = sensor->height_px,
-                         .rate_hz = sensor->rate_hz});
-}
-
-}  // namespace
-
-std::vector<Attached> industrial_cameras() {
-  using namespace camera;
-  std::vector<Attached> attached;
-  for (const auto& device : aravis::list_devices()) {
-    Attached entry{
-        .kind = Kind::camera,
-        .name = fmt::format("{} {}, serial number {}", device.vendor, device.model, device.serial),
-        .about = fmt::format("{} at {}", device.protocol, device.address),
-        .settings = {{"camera.backend", "aravis"}, {"camera.aravis.device", device.serial}},
-        .names = known(aravis::names_of(device))};
-    look_into(device, entry);
-    attached.push_back(std::move(entry));
-  }
-  return attached;
-}
-#else
-std::vector<Attached> industrial_cameras() { return {}; }
-#endif
 
 namespace {
 

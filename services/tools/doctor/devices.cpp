@@ -5,10 +5,8 @@
 
 #include "calib/calibration.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/quote.hpp"
 #include "services/camera/v4l2/list.hpp"
-#ifdef HANDCAST_WITH_ARAVIS
-#include "services/camera/aravis/device.hpp"
-#endif
 #ifdef HANDCAST_WITH_LIBUSB
 #include "services/camera/leap/controller.hpp"
 #endif
@@ -29,22 +27,21 @@ struct FoundDevice {
   return fail(Errc::bad_config, fmt::format("this build has no back end '{}'", backend));
 }
 
-Result<FoundDevice> aravis_camera([[maybe_unused]] const config::Camera& settings,
-                                  [[maybe_unused]] Asking asking) {
-#ifdef HANDCAST_WITH_ARAVIS
-  using namespace camera::aravis;
-  const auto device = find_device(settings.aravis.device);
-  if (!device) return tl::make_unexpected(device.error());
-  const auto names = names_of(*device);
-  FoundDevice found{fmt::format("{} {}, serial number {}, at {}", device->vendor, device->model,
-                                device->serial, device->address),
-                    {names.begin(), names.end()}};
-  if (asking == Asking::not_now) return found;
-  const auto opened = open_device(*device);
-  return opened ? Result<FoundDevice>(found) : tl::make_unexpected(opened.error());
-#else
-  return not_in_build("aravis");
-#endif
+Result<FoundDevice> aravis_camera(const config::Camera& settings, Asking asking) {
+  const auto& name = settings.aravis.device;
+  const auto found =
+      devices::cameras_of_files({.name = name, .opens = asking == Asking::now}, "aravis");
+  if (found.empty())
+    return fail(Errc::unavailable, name.empty() ? "no GigE Vision or USB3 Vision camera answers"
+                                                : "there is no camera " + quote(name));
+  const auto& camera = found.front();
+  if (found.size() > 1)
+    return fail(Errc::bad_config,
+                "several cameras are attached; set aravis.device to the serial "
+                "number of one");
+  if (!camera.trouble.empty())
+    return fail(camera.names.empty() ? Errc::bad_config : Errc::unavailable, camera.trouble);
+  return FoundDevice{fmt::format("{}, {}", camera.name, camera.about), camera.names};
 }
 
 Result<FoundDevice> webcam(const config::Camera& settings, Asking asking) {
@@ -138,7 +135,7 @@ Result<FoundDevice> dlp_controller([[maybe_unused]] const config::Dlp& settings,
 std::string instead_of_missing(devices::Kind kind, const std::vector<devices::Attached>& attached) {
   std::vector<std::string> names;
   for (const auto& device : attached)
-    if (device.kind == kind && !device.settings.empty())
+    if (device.kind == kind && !device.names.empty())
       names.push_back(fmt::format("{} ({} = \"{}\")", device.name, device.settings.front().first,
                                   device.settings.front().second));
   if (!names.empty()) return "attached: " + join(names, "; ");

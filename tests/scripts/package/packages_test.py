@@ -28,8 +28,8 @@ from handbook.links import faults_of
 
 PATIENCE_S = 60
 PACKAGES = {"handcast", "handcast-tools", "handcast-lab", "libhandcast0", "libhandcast-dev", "python3-handcast"}
-if (REPOSITORY / "build/bin/handcast-bridge").exists():
-    PACKAGES.add("handcast-bridge")
+OPTIONAL = {"handcast-aravis": "lib/handcast/camera/aravis.so", "handcast-bridge": "bin/handcast-bridge"}
+PACKAGES |= {package for package, file in OPTIONAL.items() if (REPOSITORY / "build" / file).exists()}
 NEEDED = ("cpack", "dpkg-deb", "dpkg-shlibdeps", "git")
 
 scratch = None
@@ -94,6 +94,11 @@ def skip_without(program):
 class ThePackages(unittest.TestCase):
     def test_are_those_of_this_build(self):
         self.assertEqual(set(packages), PACKAGES)
+
+    @unittest.skipUnless((REPOSITORY / "build" / OPTIONAL["handcast-aravis"]).exists(), "this build has no Aravis")
+    def test_leave_aravis_to_those_who_have_an_industrial_camera(self):
+        need_it = {name for name, file in packages.items() if "libaravis" in output_of("dpkg-deb", "-f", file, "Depends")}
+        self.assertEqual(need_it, {"handcast-aravis"})
 
     def test_are_the_same_byte_by_byte_when_they_are_packed_again(self):
         os.umask(0o077)

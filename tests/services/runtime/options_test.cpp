@@ -64,6 +64,25 @@ TEST(DaemonOptions, QuestionsNeedNoConfiguration) {
   EXPECT_THAT(*parse({"-h"})->answer, HasSubstr("Delivers images."));
 }
 
+TEST(DaemonOptions, DevicesAreAskedForWhereBackEndsFindAny) {
+  EXPECT_THAT(parse({"--attached"}).error().what, HasSubstr("unknown option '--attached'"));
+  daemon::Search asked;
+  const std::array instances{Instance{{.name = "camera"}, {}, {}, [&](const auto& search) {
+                                        asked = search;
+                                        return std::vector{daemon::Attached{.name = "GV01"}};
+                                      }}};
+  const auto answer = [&](std::vector<const char*> arguments) {
+    arguments.insert(arguments.begin(), {"handcast-camera", "--attached"});
+    return parse_options(instances, static_cast<int>(arguments.size()), arguments.data())->answer;
+  };
+  EXPECT_EQ(daemon::attached_from(*answer({})).value()[0].name, "GV01");
+  EXPECT_EQ(asked.name, "");
+  EXPECT_TRUE(asked.opens);
+  answer({"--named", "7", "--untouched"});
+  EXPECT_EQ(asked.name, "7");
+  EXPECT_FALSE(asked.opens);
+}
+
 TEST(BackEndFiles, AreThoseOfThisVersion) {
   EXPECT_THAT(kAbi.version, StartsWith(std::string(version()) + "-"));
 }

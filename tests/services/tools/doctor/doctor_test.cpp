@@ -179,7 +179,12 @@ TEST(Devices, WhatIsAttachedInsteadIsNamedWithItsBackEnd) {
       {.kind = devices::Kind::camera,
        .name = "'HD Webcam' (/dev/video0)",
        .about = {},
-       .settings = {{"camera.backend", "v4l2"}, {"camera.v4l2.device", "/dev/video0"}}}};
+       .settings = {{"camera.backend", "v4l2"}, {"camera.v4l2.device", "/dev/video0"}},
+       .names = {"HD Webcam"}},
+      {.kind = devices::Kind::camera,  // a file that cannot be loaded
+       .name = "camera 'mine'",
+       .about = {},
+       .settings = {{"camera.backend", "mine"}}}};
   EXPECT_EQ(instead_of_missing(devices::Kind::camera, attached),
             "attached: 'HD Webcam' (/dev/video0) (camera.backend = \"v4l2\")");
   EXPECT_EQ(instead_of_missing(devices::Kind::controller, attached), "no controller is attached");
