@@ -101,6 +101,22 @@ TEST_F(Devices, AFileOfABackEndThatCannotBeLoadedIsListedWithItsTrouble) {
               HasSubstr("  camera 'mine'\n    cannot be used: " + (folder / "mine.so").string()));
 }
 
+TEST_F(Devices, AFileOfABackEndThatEndsItsProgramIsTold) {
+  const auto folder = scratch_.path() / "handcast/camera";
+  std::filesystem::create_directories(folder);
+  std::ofstream(scratch_.path() / "deadly.c")
+      << "#include <stdlib.h>\n__attribute__((constructor)) static void end(void) { _Exit(7); }\n";
+  ASSERT_EQ(std::system(("cc -shared -fPIC -o " + (folder / "deadly.so").string() + " " +
+                         (scratch_.path() / "deadly.c").string())
+                            .c_str()),
+            0);
+  const Variable place("LD_LIBRARY_PATH", scratch_.path().c_str());
+  EXPECT_THAT(handcast({"devices"}).output, HasSubstr("cannot be used: not a list of devices"));
+  const auto doctor =
+      handcast({"doctor", "config/rigs/twin.toml", "--json", "--set", "camera.backend=aravis"});
+  EXPECT_THAT(doctor.output, HasSubstr("not a list of devices"));
+}
+
 TEST_F(Devices, TheDoctorLooksAtTheDisplayOfTheRig) {
   const Variable preload("LD_PRELOAD", HANDCAST_EMULATED_DEVICES),
       card("HANDCAST_EMULATED_CARD", "EPSON PJ");

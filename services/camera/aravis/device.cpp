@@ -187,7 +187,8 @@ daemon::Attached entry_of(const Device& device) {
   return {.kind = daemon::Kind::camera,
           .name = name_of(device),
           .about = fmt::format("{} at {}", device.protocol, device.address),
-          .settings = {{"camera.backend", "aravis"}, {"camera.aravis.device", names.front()}},
+          .settings = {{"camera.backend", "aravis"},
+                       {"camera.aravis.device", names.empty() ? "" : names.front()}},
           .names = names};
 }
 

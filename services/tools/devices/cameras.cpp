@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "services/camera/v4l2/format.hpp"
 #include "services/camera/v4l2/list.hpp"
@@ -10,18 +12,32 @@
 
 namespace handcast::devices {
 
+namespace {
+
+/// The list, or what keeps handcast-camera from giving it: a vendor's library may print or die.
+std::vector<Attached> list_of(const std::optional<Answer>& answer) {
+  std::string trouble = "it cannot be started";
+  if (answer) {
+    auto list = daemon::attached_from(answer->text);
+    if (list && answer->exit_code == 0) return std::move(*list);
+    trouble =
+        list ? fmt::format("it ended with exit code {}", answer->exit_code) : list.error().what;
+  }
+  return {{.name = "`handcast-camera --attached`", .trouble = std::move(trouble)}};
+}
+
+}  // namespace
+
 std::vector<Attached> cameras_of_files(const Search& search, const std::string& file) {
   std::vector<std::string> words{program("handcast-camera"), "--attached"};
   if (!search.name.empty()) words.push_back("--named=" + search.name);
   if (!search.opens) words.emplace_back("--untouched");
-  const auto answer = ask(std::move(words), STDOUT_FILENO);
-  auto found = answer ? daemon::attached_from(answer->text).value_or(std::vector<Attached>())
-                      : std::vector<Attached>();
-  if (!file.empty())
-    std::erase_if(found, [&](const Attached& camera) {
-      return std::ranges::count(camera.settings,
-                                std::pair<std::string, std::string>("camera.backend", file)) == 0;
-    });
+  auto found = list_of(ask(std::move(words), STDOUT_FILENO));
+  const std::pair<std::string, std::string> of_file("camera.backend", file);
+  std::erase_if(found, [&](const Attached& camera) {
+    if (camera.settings.empty()) return !camera.names.empty();  // nothing could use it
+    return !file.empty() && std::ranges::count(camera.settings, of_file) == 0;
+  });
   return found;
 }
 

@@ -28,8 +28,8 @@ const std::string& backend_of(const Attached& device) { return device.settings.f
 std::string unique_name(const Attached& device, const std::vector<Attached>& attached) {
   const auto is_of_another = [&](const std::string& name) {
     return std::ranges::any_of(attached, [&](const Attached& other) {
-      return &other != &device && backend_of(other) == backend_of(device) &&
-             std::ranges::find(other.names, name) != other.names.end();
+      return &other != &device && std::ranges::count(other.names, name) > 0 &&
+             backend_of(other) == backend_of(device);
     });
   };
   for (const auto& name : device.names)
