@@ -56,8 +56,9 @@ install(TARGETS handcast_back_end EXPORT handcastTargets)
 install(DIRECTORY config/sections DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/handcast/config COMPONENT dev FILES_MATCHING PATTERN *.hpp)
 foreach(header
     calib/calibration.hpp calib/projector_model.hpp config/rig.hpp config/settings/field.hpp config/settings/frozen_file.hpp
-    config/settings/setting_list.hpp ipc/daemon/back_end_files.hpp ipc/daemon/description.hpp renderer/base/device_image.hpp renderer/base/image.hpp
-    renderer/base/landmark_points.hpp renderer/base/mip_chain.hpp renderer/correct/deform.hpp renderer/correct/rung.hpp renderer/draw/painter.hpp
+    config/settings/setting_list.hpp ipc/daemon/attached.hpp ipc/daemon/back_end_files.hpp ipc/daemon/description.hpp
+    renderer/base/device_image.hpp renderer/base/image.hpp renderer/base/landmark_points.hpp renderer/base/mip_chain.hpp
+    renderer/correct/deform.hpp renderer/correct/rung.hpp renderer/draw/painter.hpp
     renderer/hand/hand_mesh.hpp renderer/output/light.hpp renderer/pipeline/frame.hpp services/camera/camera.hpp services/joints/conventions.hpp
     services/landmarks/detector.hpp services/landmarks/geometry/points.hpp services/pose/pose_source.hpp services/projector/projector.hpp
     services/runtime/backends.hpp)

@@ -334,7 +334,12 @@ const service::LoadedBackEnd<ProjectorBackend> handcast_projector_back_end{.row 
             source.write_text(text)
             (scratch / "own/handcast" / service).mkdir()
             self.compile(f"../{service}/own", source, *flags("--cflags"))
-        rig = self.start_rig("landmarks.backend=own", "projector.backend=own", LD_LIBRARY_PATH=str(scratch / "own"))
+        own = {"LD_LIBRARY_PATH": str(scratch / "own")}
+        self.assertIn("in order", run(tree / "bin/handcast", "config", "--check", rig_file(), "--set", "landmarks.backend=own", **own))
+        without_models = scratch / "no models"
+        without_models.mkdir()
+        rig = self.start_rig("landmarks.backend=mediapipe", f"landmarks.models={without_models}", "landmarks.fallback=own",
+                             "projector.backend=own", **own)
         for line in rig.stdout:
             self.said += line
             if re.search(r"projector +info +[1-9]\d+ pixels are lit", line):
@@ -342,6 +347,7 @@ const service::LoadedBackEnd<ProjectorBackend> handcast_projector_back_end{.row 
         else:
             self.fail(self.said)
         handcast("down")
+        self.assertIn("so 'own' takes the place of 'mediapipe'", self.said + rig.stdout.read())
 
     def test_that_cannot_be_loaded_is_refused_with_a_sentence(self):
         (self.own / "text.so").write_text("no library\n")
