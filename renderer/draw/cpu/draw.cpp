@@ -234,13 +234,16 @@ HANDCAST_CLONES void set_corners(const DrawnHand& hand, int index, std::span<Cor
 void colour_band(Rect band, std::span<const Sampler> samplers, RasterTarget& target,
                  FrameBuffer& out) {
   for (int row = band.y0 / kBlockSide; row * kBlockSide < band.y1; ++row) {
-    const Span columns = target.drawn(row),
-               pixels =
-                   Span{columns.x0 * kBlockSide, columns.x1 * kBlockSide}.within(band.x0, band.x1);
+    const auto [left, right] = target.all_drawn(row);
+    const Span all = left.joined(right),
+               pixels = Span{all.x0 * kBlockSide, all.x1 * kBlockSide}.within(band.x0, band.x1);
     for (int y = std::max(row * kBlockSide, band.y0); y < std::min((row + 1) * kBlockSide, band.y1);
-         ++y)
+         ++y) {
       out.darken(y, band.x0, band.x1, pixels);
-    if (!columns.empty()) colour_blocks(target.row(row), columns, row, band, samplers, out);
+      if (!right.empty()) out.clear(y, left.x1 * kBlockSide, right.x0 * kBlockSide);
+    }
+    for (const Span columns : {left, right})
+      if (!columns.empty()) colour_blocks(target.row(row), columns, row, band, samplers, out);
   }
 }
 
@@ -284,8 +287,10 @@ void Drawer::draw(std::span<const DrawnHand> hands, std::span<const Sampler> sam
     RasterTarget& target = targets[static_cast<std::size_t>(worker)];
     const Rect rows = Rect{region.x0, band * kBand, region.x1, (band + 1) * kBand}.overlap(region);
     target.start(band * kBandRows);
-    for (std::size_t i = 0; i < hands.size(); ++i)
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+      if (i > 0) target.begin_other();
       rasterise(placed_[i].list, placed_[i].bins.of_band(band), rows, target);
+    }
     colour_band(rows, samplers, target, out);
   };
   crew.run(last - first + 1, draw_band);

@@ -25,19 +25,20 @@ struct FrameBuffer {
   void darken(int y, int x0, int x1, Span written) {
     Span& row = lit[static_cast<std::size_t>(y)];
     const Span old = row.within(x0, x1);
-    const auto clear = [&](int from, int to) {
-      if (from >= to) return;
-      std::fill(colour.row(y) + from, colour.row(y) + to, 0);
-      std::fill(surface.row(y) + from, surface.row(y) + to, SurfaceId{0});
-    };
     if (written.empty()) {
-      clear(old.x0, old.x1);
+      clear(y, old.x0, old.x1);
     } else {
-      clear(old.x0, std::min(old.x1, written.x0));
-      clear(std::max(old.x0, written.x1), old.x1);
+      clear(y, old.x0, std::min(old.x1, written.x0));
+      clear(y, std::max(old.x0, written.x1), old.x1);
     }
     const bool all_seen = row.x0 >= x0 && row.x1 <= x1;
     row = all_seen ? written : row.joined(written);
+  }
+  /// Makes pixels [x0, x1) of row `y` dark; none if that is empty.
+  void clear(int y, int x0, int x1) {
+    if (x0 >= x1) return;
+    std::fill(colour.row(y) + x0, colour.row(y) + x1, 0);
+    std::fill(surface.row(y) + x0, surface.row(y) + x1, SurfaceId{0});
   }
 
   Plane<std::uint32_t> colour;  ///< RGBA8, alpha 0 where dark

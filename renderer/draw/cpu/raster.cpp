@@ -203,10 +203,12 @@ RasterTarget::RasterTarget(int width, int height)
 
 void RasterTarget::start(int first) {
   for (int y = first_; y < first_ + static_cast<int>(drawn_.size()); ++y) {
-    for (int x = drawn(y).x0; x < drawn(y).x1; ++x) clear(row(y)[x]);
-    drawn(y) = {};
+    for (const Span span : all_drawn(y))
+      for (int x = span.x0; x < span.x1; ++x) clear(row(y)[x]);
+    drawn_[line(y)] = {};
   }
   first_ = first;
+  hand_ = 0;
 }
 
 void TriangleBins::reserve(std::size_t triangles) {

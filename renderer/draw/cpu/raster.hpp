@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "renderer/base/image.hpp"
@@ -107,8 +108,19 @@ class RasterTarget {
   /// @}
   /// Blocks from one row of blocks to the next.
   int columns() const { return columns_; }
-  /// The columns of blocks in a row of blocks outside of which nothing was drawn.
-  Span& drawn(int block_row) { return drawn_[line(block_row)]; }
+  /// What is drawn until the next start() is of another hand: what is between them is not looked
+  /// at.
+  void begin_other() { hand_ = 1; }
+  /// The columns of blocks in a row of blocks outside of which nothing was drawn of the hand.
+  Span& drawn(int block_row) { return drawn_[line(block_row)][hand_]; }
+  /// The same of all hands: one span, or two from left to right that are apart.
+  std::array<Span, 2> all_drawn(int block_row) const {
+    auto [left, right] = drawn_[line(block_row)];
+    if (left.empty() || right.empty()) return {left.joined(right), Span{}};
+    if (right.x0 < left.x0) std::swap(left, right);
+    if (right.x0 <= left.x1) return {left.joined(right), Span{}};
+    return {left, right};
+  }
 
   /// One pixel of a block.
   struct Pixel {
@@ -128,9 +140,9 @@ class RasterTarget {
  private:
   std::size_t line(int block_row) const { return static_cast<std::size_t>(block_row - first_); }
 
-  int columns_, first_ = 0;
+  int columns_, first_ = 0, hand_ = 0;
   std::vector<PixelBlock> blocks_;
-  std::vector<Span> drawn_;
+  std::vector<std::array<Span, 2>> drawn_;  ///< by row and hand
 };
 
 /// How a pixel reads its picture: its light (0..255) and the level of the mip chain.

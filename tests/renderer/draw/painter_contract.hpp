@@ -159,6 +159,23 @@ TEST_P(PainterContract, OfTwoHandsTheNearerIsSeenInEitherOrder) {
   }
 }
 
+TEST_P(PainterContract, BetweenTwoHandsThereIsNoLightLeft) {
+  Shape left, middle, right;
+  left.rectangle({10.5f, 20.5f}, {41.5f, 60.5f});
+  middle.rectangle({20.5f, 10.5f}, {140.5f, 100.5f});
+  right.rectangle({70.5f, 30.5f}, {101.5f, 80.5f});
+  for (const bool left_first : {true, false}) {
+    draw(*painter_, middle, kWhole);
+    const std::array<DrawnHand, 2> hands = left_first ? std::array{left.drawn(), right.drawn()}
+                                                      : std::array{right.drawn(), left.drawn()};
+    painter_->draw(hands, kWhole);
+    EXPECT_EQ(lit_pixels(), 31 * 40 + 31 * 50);
+    for (const int x : {42, 43, 44, 69, 70}) EXPECT_EQ(colour(x, 50), 0u) << x;
+    EXPECT_NE(colour(41, 50), 0u);
+    EXPECT_NE(colour(71, 50), 0u);
+  }
+}
+
 TEST_P(PainterContract, AtEqualDepthTheLaterTriangleIsSeen) {
   Shape one;
   one.rectangle({40, 40}, {90, 90}, 0.5f, 2);
