@@ -278,13 +278,25 @@ Result<Rig> change_rig(const Rig& rig, const NamedText& layer,
   return parse_layers(rig, {&layer, 1}, settings);
 }
 
+/// Names the rig that was installed under the name of a file that is not there.
+static Error with_installed(Error error, const std::filesystem::path& file) {
+  std::error_code unknown;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  const auto installed =
+      program.parent_path().parent_path() / "share/handcast/rigs" / file.filename();
+  if (!std::filesystem::exists(file, unknown) &&
+      std::filesystem::is_regular_file(installed, unknown))
+    error.what += "; there is " + installed.string();
+  return error;
+}
+
 Result<Rig> load_rig(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   std::vector<NamedText> layers;
   std::error_code unknown;
   for (const auto& layer : {file, measured_file_of(file), live_file_of(file)}) {
     if (!layers.empty() && !std::filesystem::exists(layer, unknown)) continue;
     auto text = read_text(layer);
-    if (!text) return tl::make_unexpected(text.error());
+    if (!text) return tl::make_unexpected(with_installed(text.error(), layer));
     layers.push_back({layer.string(), std::move(*text)});
   }
   return parse_layers({}, layers, settings);

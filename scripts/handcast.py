@@ -211,6 +211,15 @@ def _both(hands: Mapping[str, Sequence]) -> list:
     return [hands.get(name) for name in HANDS]
 
 
+def _shaped(what: str, values: Sequence, count: int, columns: tuple) -> "numpy.ndarray":
+    values = numpy.asarray(values, numpy.float32)
+    if values.ndim != 2 or values.shape[0] != count or values.shape[1] not in columns:
+        raise ValueError(f"{what} must be {count} x {' or '.join(map(str, columns))}, not {' x '.join(map(str, values.shape))}")
+    if not numpy.isfinite(values).all():
+        raise ValueError(f"{what} must be numbers, and one is NaN or infinite")
+    return values
+
+
 class Pose:
     """The tracker of a rig with pose.backend = "external"."""
 
@@ -227,7 +236,7 @@ class Pose:
         for side, joints in enumerate(_both(hands)):
             self._hands.is_there[side] = joints is not None
             if joints is not None:
-                self._joints[side][:] = joints
+                self._joints[side][:] = _shaped("joints", joints, JOINTS, (8,))
         rig._check(rig._library.handcast_send_hands(rig._handle, self._hands))
 
 
@@ -247,7 +256,7 @@ class Landmarks:
         for side, points in enumerate(_both(hands)):
             found.presence[side] = points is not None
             if points is not None:
-                points = numpy.asarray(points, numpy.float32)
+                points = _shaped("landmarks", points, LANDMARKS, (2, 3, 4))
                 self._points[side][:] = (0, 0, 1, 0)
                 self._points[side][:, :points.shape[1]] = points
         rig._check(rig._library.handcast_send_landmarks(rig._handle, found))
@@ -325,7 +334,7 @@ def pose_rows(hands: Mapping[str, Sequence], origin_ns: int, arrival_ns: int) ->
 
 def landmark_rows(hands: Mapping[str, Sequence], origin_ns: int, arrival_ns: int) -> list:
     """The rows of an image for `handcast simulate --landmarks FILE.npy`. `hands`: by name, 21 x 2 px of the image."""
-    points = {name: numpy.hstack([places, [[1, 0]] * LANDMARKS]) for name, places in hands.items() if places is not None}
+    points = {name: numpy.hstack([_shaped("landmarks", places, LANDMARKS, (2,)), [[1, 0]] * LANDMARKS]) for name, places in hands.items() if places is not None}
     return _rows(points, (LANDMARKS, 4), origin_ns, arrival_ns)
 
 

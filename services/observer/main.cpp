@@ -29,13 +29,14 @@ static double number(const nlohmann::json& json, const char* pointer) {
   return json.contains(found) && json.at(found).is_number() ? json.at(found).get<double>() : 0.0;
 }
 
-static void log_scores(const observer::Judge& judge, observer::ScoreLog& log,
+/// `log`: decides whether the scores are worth a line; null: they are, because the rig stops.
+static void log_scores(const observer::Judge& judge, observer::ScoreLog* log,
                        std::int64_t time_ns) {
   if (judge.empty()) return;
   const auto json = judge.scores();
   const observer::LoggedScores scores{number(json, "/interior_mm/p95"), number(json, "/coverage"),
                                       number(json, "/spill")};
-  if (log.is_due(time_ns, scores))
+  if (!log || log->is_due(time_ns, scores))
     log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}", scores.interior_p95_mm,
               scores.coverage, scores.spill);
 }
@@ -68,11 +69,12 @@ static void run_observer(service::Context& context) {
       save_ns = time_ns + to_ns(2s);
     }
     if (time_ns >= log_ns) {
-      log_scores(*judge, score_log, time_ns);
+      log_scores(*judge, &score_log, time_ns);
       log_ns = time_ns + to_ns(5s);
     }
   }
   save(*judge, context);
+  log_scores(*judge, nullptr, now_ns());
 }
 
 static Result<void> check_observer(const config::Rig& rig, const calib::Calibration& calibration) {

@@ -11,15 +11,16 @@ struct LoggedScores {
   double coverage = 0, spill = 0;
 };
 
-/// Says when scores are worth a line of the log: at first, every hour, and when they have changed
-/// so much that a person would see it. At most one line a minute. One thread.
+/// Says when scores are worth a line of the log: at first, a minute later, when they are those of a
+/// rig that runs, every hour, and when they have changed so much that a person would see it. At
+/// most one line a minute. One thread.
 class ScoreLog {
  public:
   /// True if the scores of this moment should be logged.
   bool is_due(std::int64_t now_ns, const LoggedScores& scores) {
-    const auto since_ns = now_ns - told_ns_;
-    if (has_told_ && since_ns < (differs(scores) ? kMinute_ns : kHour_ns)) return false;
-    has_told_ = true;
+    const bool is_early = lines_ == 1 || differs(scores);
+    if (lines_ > 0 && now_ns - told_ns_ < (is_early ? kMinute_ns : kHour_ns)) return false;
+    ++lines_;
     told_ns_ = now_ns;
     told_ = scores;
     return true;
@@ -36,8 +37,7 @@ class ScoreLog {
            by(scores.coverage, told_.coverage) > kRatio || by(scores.spill, told_.spill) > kRatio;
   }
 
-  bool has_told_ = false;
-  std::int64_t told_ns_ = 0;
+  std::int64_t lines_ = 0, told_ns_ = 0;
   LoggedScores told_;
 };
 

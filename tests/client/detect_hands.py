@@ -4,8 +4,9 @@
 
 usage: PYTHONPATH=PREFIX/share/handcast/python detect_hands.py NETWORK.onnx IMAGES
 
-The network is the one of handcast (share/handcast/landmarks/handcast.onnx); for another one, change look(). The
-hand is the left one and the brightest thing in the image; afterwards it is looked for where it was.
+It ends after so many images. The network is the one of handcast (share/handcast/landmarks/handcast.onnx); for another
+one, change region(), which crops and mirrors, and look(), which makes the input and reads the output. The hand is the
+left one and the brightest thing in the image; afterwards it is looked for where it was.
     handcast up RIG.toml --set landmarks.backend=external
 """
 import sys
@@ -64,6 +65,8 @@ class Detector:
 
 
 def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
     detector = Detector(sys.argv[1])
     rig = handcast.Rig()
     for number, frame in zip(range(int(sys.argv[2])), rig.camera):

@@ -123,6 +123,10 @@ class TheInstalledTree(unittest.TestCase):
         said = handcast("simulate", rig_file(), "--seconds", "0.1", "--frames", frames)
         self.assertRegex(said, r"interior error mean [\d.]+ mm")
 
+    def test_names_an_installed_rig_in_place_of_one_that_is_not_there(self):
+        said = run(tree / "bin/handcast", "config", "--check", "config/rigs/twin.toml", codes=(100,), both=True)
+        self.assertIn(f"; there is {tree / 'share/handcast/rigs/twin.toml'}", said)
+
     def test_finds_the_network_of_the_detector(self):
         picture = scratch / "picture.png"
         picture.write_bytes((tree / "share/doc/handcast/config/assets/readme.png").read_bytes())

@@ -22,6 +22,13 @@ class Rows(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "there is no hand"):
                 handcast.landmark_rows(hands, 5, 9)
 
+    def test_of_points_of_another_shape_are_refused(self):
+        for points in (POINTS[1:], [1.0] * 63, [[1, 2, 3]] * handcast.LANDMARKS):
+            with self.assertRaisesRegex(ValueError, "landmarks must be 21 x 2, not "):
+                handcast.landmark_rows({"left": points}, 5, 9)
+        with self.assertRaisesRegex(ValueError, "one is NaN or infinite"):
+            handcast.landmark_rows({"left": [[float("nan"), 2]] * handcast.LANDMARKS}, 5, 9)
+
 
 if __name__ == "__main__":
     unittest.main()

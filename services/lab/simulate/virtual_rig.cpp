@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "ipc/base/clock.hpp"
@@ -57,6 +58,27 @@ Result<SentMessages> read_sent(const Options& options, const calib::Calibration&
   return sent;
 }
 
+/// Error bad_config: most landmarks are of no image of this run.
+Result<void> check_images(const std::vector<SensorEvent>& sent, const twin::Twin& twin) {
+  constexpr std::int64_t kLongest_ns = 3'600'000'000'000;
+  std::vector<std::int64_t> stamps_ns;
+  for (const auto& event : sent)
+    stamps_ns.push_back(std::get<msg::Landmarks>(event.message).header.origin_ns);
+  std::ranges::sort(stamps_ns);
+  std::uint64_t frame = 0;
+  std::size_t strange = 0;
+  for (const auto stamp_ns : stamps_ns) {
+    while (stamp_ns < kLongest_ns && twin.camera_stamp_ns(frame) < stamp_ns) ++frame;
+    if (twin.camera_stamp_ns(frame) != stamp_ns) ++strange;
+  }
+  if (2 * strange < stamps_ns.size()) return {};
+  return fail(Errc::bad_config,
+              fmt::format("{} of {} landmarks are of no image of this run: give `simulate` the rig "
+                          "and the settings that `export-twin` had, camera.rate_hz and twin.seed "
+                          "among them",
+                          strange, stamps_ns.size()));
+}
+
 }  // namespace
 
 Result<void> check_can_be_scored(const config::Rig& rig, const Options& options) {
@@ -84,6 +106,9 @@ Result<VirtualRig> open_virtual_rig(const config::Rig& rig, const calib::Calibra
   if (!sent) return tl::make_unexpected(sent.error());
   auto twin = twin::Twin::create(rig, calibration);
   if (!twin) return tl::make_unexpected(twin.error());
+  if (sent->landmarks)
+    if (auto same = check_images(*sent->landmarks, **twin); !same)
+      return fail_in(options.landmarks_file, same.error());
   const auto truth = [&world = **twin](renderer::Side side, std::int64_t time_ns) {
     return world.landmarks(side, time_ns);
   };

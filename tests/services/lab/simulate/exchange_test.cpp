@@ -101,6 +101,18 @@ TEST_F(ExchangeTest, LandmarksThatAreWrongScoreWorse) {
   EXPECT_GT(figure(wrong, "/detector/error_px/mean"), 15);
 }
 
+TEST_F(ExchangeTest, LandmarksOfTheImagesOfAnotherRunAreRefused) {
+  metrics([&](Options& options) { options.record_directory = file("twin"); });
+  Options options = options_of("twin", 0.4);
+  options.warm_up_s = kWarmUp_s;
+  options.landmarks_file = file("twin/landmarks.csv");
+  add_settings(options, {"twin.motion=builtin:two_hands", "camera.rate_hz=60"});
+  const auto done = run(options);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().code, Errc::bad_config);
+  EXPECT_THAT(done.error().what, HasSubstr("are of no image of this run"));
+}
+
 TEST_F(ExchangeTest, TheTruthIsThatOfTheImages) {
   metrics([&](Options& options) { options.record_directory = file("twin"); });
   const auto poses = read_poses(file("twin/true_poses.csv"));

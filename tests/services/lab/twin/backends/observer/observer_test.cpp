@@ -80,7 +80,7 @@ TEST(LiveJudge, TheScoreDoesNotDependOnWhenTheRigWasStarted) {
   EXPECT_EQ(shifted.hands[0].lit_px, 0);
 }
 
-TEST(ScoreLog, ScoresAreLoggedAtFirstThenHourlyAndWhenTheyChange) {
+TEST(ScoreLog, ScoresAreLoggedAtFirstAMinuteLaterThenHourlyAndWhenTheyChange) {
   constexpr std::int64_t kLook_ns = 5 * kSecond_ns;
   ScoreLog log;
   std::int64_t now_ns = 0;
@@ -91,7 +91,8 @@ TEST(ScoreLog, ScoresAreLoggedAtFirstThenHourlyAndWhenTheyChange) {
   };
   constexpr int kHour = 3600 / 5;
   constexpr LoggedScores kUsual{8, 0.98, 0.02};
-  EXPECT_EQ(lines(9 * kHour + 1, kUsual), 10);
+  EXPECT_EQ(lines(14, kUsual), 2) << "at once, and when the rig has settled";
+  EXPECT_EQ(lines(9 * kHour, kUsual), 9);
   EXPECT_EQ(lines(kHour / 2, {9, 0.97, 0.03}), 0) << "not a change that a person sees";
   EXPECT_EQ(lines(kHour / 4, {8, 0.60, 0.02}), 1) << "a third of the hand is dark";
   EXPECT_EQ(lines(kHour / 4, kUsual), 1) << "as before";
