@@ -51,7 +51,7 @@ constexpr Places places() {
     for (int c = 0; c < kColumns; ++c)
       places.right[c][i] = static_cast<float>(c * kBlockSide + i % kBlockSide);
     for (int r = 0; r < kBandRows; ++r)
-      places.down[r][i] = static_cast<float>(r * kBlockSide + i / kBlockSide);
+      places.down[r][i] = static_cast<float>(r * kBlockSide + (i >> kBlockBits));
   }
   return places;
 }

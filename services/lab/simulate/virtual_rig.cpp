@@ -62,6 +62,7 @@ Result<SentMessages> read_sent(const Options& options, const calib::Calibration&
 Result<void> check_images(const std::vector<SensorEvent>& sent, const twin::Twin& twin) {
   constexpr std::int64_t kLongest_ns = 3'600'000'000'000;
   std::vector<std::int64_t> stamps_ns;
+  stamps_ns.reserve(sent.size());
   for (const auto& event : sent)
     stamps_ns.push_back(std::get<msg::Landmarks>(event.message).header.origin_ns);
   std::ranges::sort(stamps_ns);
