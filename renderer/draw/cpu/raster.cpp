@@ -197,16 +197,15 @@ Facing facing_of(std::span<const Corner> corners, std::span<const TriangleIndice
 RasterTarget::RasterTarget(int width, int height)
     : columns_(width / kBlockSide + 1),
       blocks_(static_cast<std::size_t>(columns_) * (height / kBlockSide + 1)),
-      drawn_(static_cast<std::size_t>(height / kBlockSide + 1)) {
+      drawn_(2 * static_cast<std::size_t>(height / kBlockSide + 1)) {
   std::ranges::for_each(blocks_, clear);
 }
 
 void RasterTarget::start(int first) {
-  for (int y = first_; y < first_ + static_cast<int>(drawn_.size()); ++y) {
+  for (int y = first_; y < first_ + static_cast<int>(rows()); ++y)
     for (const Span span : all_drawn(y))
       for (int x = span.x0; x < span.x1; ++x) clear(row(y)[x]);
-    drawn_[line(y)] = {};
-  }
+  std::ranges::fill(drawn_, Span{});
   first_ = first;
   hand_ = 0;
 }

@@ -110,12 +110,12 @@ class RasterTarget {
   int columns() const { return columns_; }
   /// What is drawn until the next start() is of another hand: what is between them is not looked
   /// at.
-  void begin_other() { hand_ = 1; }
+  void begin_other() { hand_ = rows(); }
   /// The columns of blocks in a row of blocks outside of which nothing was drawn of the hand.
-  Span& drawn(int block_row) { return drawn_[line(block_row)][hand_]; }
+  Span& drawn(int block_row) { return drawn_[hand_ + line(block_row)]; }
   /// The same of all hands: one span, or two from left to right that are apart.
   std::array<Span, 2> all_drawn(int block_row) const {
-    auto [left, right] = drawn_[line(block_row)];
+    Span left = drawn_[line(block_row)], right = drawn_[rows() + line(block_row)];
     if (left.empty() || right.empty()) return {left.joined(right), Span{}};
     if (right.x0 < left.x0) std::swap(left, right);
     if (right.x0 <= left.x1) return {left.joined(right), Span{}};
@@ -140,9 +140,12 @@ class RasterTarget {
  private:
   std::size_t line(int block_row) const { return static_cast<std::size_t>(block_row - first_); }
 
-  int columns_, first_ = 0, hand_ = 0;
+  std::size_t rows() const { return drawn_.size() / 2; }
+
+  int columns_, first_ = 0;
   std::vector<PixelBlock> blocks_;
-  std::vector<std::array<Span, 2>> drawn_;  ///< by row and hand
+  std::vector<Span> drawn_;  ///< by row, of the first hand, then of the others
+  std::size_t hand_ = 0;     ///< where the spans of the hand begin
 };
 
 /// How a pixel reads its picture: its light (0..255) and the level of the mip chain.
