@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const Attached kCamera{.kind = Kind::camera,
+const Attached kBasler{.kind = Kind::camera,
                        .name = "Basler acA720, serial number 7",
                        .about = "GigEVision at 10.0.0.7",
                        .settings = {{"camera.backend", "aravis"}, {"camera.aravis.device", "7"}},
@@ -18,14 +18,14 @@ const Attached kCamera{.kind = Kind::camera,
                        .is_operators = true};
 
 TEST(Attached, ComesBackAsItWasPrinted) {
-  const auto read = attached_from(to_json({kCamera, {.kind = Kind::tracker}})).value();
+  const auto read = attached_from(to_json({kBasler, {.kind = Kind::tracker}})).value();
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[0].kind, Kind::camera);
-  EXPECT_EQ(read[0].name, kCamera.name);
-  EXPECT_EQ(read[0].about, kCamera.about);
-  EXPECT_EQ(read[0].settings, kCamera.settings) << "in their order";
-  EXPECT_EQ(read[0].trouble, kCamera.trouble);
-  EXPECT_EQ(read[0].names, kCamera.names);
+  EXPECT_EQ(read[0].name, kBasler.name);
+  EXPECT_EQ(read[0].about, kBasler.about);
+  EXPECT_EQ(read[0].settings, kBasler.settings) << "in their order";
+  EXPECT_EQ(read[0].trouble, kBasler.trouble);
+  EXPECT_EQ(read[0].names, kBasler.names);
   EXPECT_TRUE(read[0].is_operators);
   ASSERT_EQ(read[0].modes.size(), 1u);
   EXPECT_EQ(read[0].modes[0].format, "GREY");
@@ -44,7 +44,7 @@ TEST(Attached, MayBeCalledAnything) {
 }
 
 TEST(Attached, ThatIsNoListOfDevicesIsAnError) {
-  const auto text = to_json({kCamera});
+  const auto text = to_json({kBasler});
   for (const auto& bad : {text.substr(0, text.size() / 2), std::string(), std::string("[1]"),
                           std::string(R"([{"kind": "cameras"}])"), std::string("{}")})
     EXPECT_EQ(attached_from(bad).error().code, Errc::bad_data) << bad;
