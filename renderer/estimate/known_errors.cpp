@@ -30,12 +30,10 @@ bool KnownErrors::add(const calib::CameraModel& camera, const Sighting& sighting
     rivals_ = earlier_.size();
   if (now_.explain(camera, sighting)) {
     if (rivals_ > 0) compare(camera, unchanged);
-  } else {
-    if (!recall(camera, unchanged)) {
-      if (!is_doubtful_ || next_ != 0) return false;
-      now_.errors.forget_place();
-      now_.explain(camera, unchanged);
-    }
+  } else if (!recall(camera, unchanged)) {
+    if (!is_doubtful_ || next_ != 0) return false;
+    now_.errors.forget_place();
+    now_.explain(camera, unchanged);
   }
   is_doubtful_ = false;
   next_ = 0;

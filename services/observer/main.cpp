@@ -29,16 +29,14 @@ static double number(const nlohmann::json& json, const char* pointer) {
   return json.contains(found) && json.at(found).is_number() ? json.at(found).get<double>() : 0.0;
 }
 
-/// `log`: decides whether the scores are worth a line; null: they are, because the rig stops.
-static void log_scores(const observer::Judge& judge, observer::ScoreLog* log,
-                       std::int64_t time_ns) {
-  if (judge.empty()) return;
+static observer::LoggedScores scores_of(const observer::Judge& judge) {
   const auto json = judge.scores();
-  const observer::LoggedScores scores{number(json, "/interior_mm/p95"), number(json, "/coverage"),
-                                      number(json, "/spill")};
-  if (!log || log->is_due(time_ns, scores))
-    log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}", scores.interior_p95_mm,
-              scores.coverage, scores.spill);
+  return {number(json, "/interior_mm/p95"), number(json, "/coverage"), number(json, "/spill")};
+}
+
+static void log_scores(const observer::LoggedScores& scores) {
+  log::info("interior p95 {:.2f} mm, coverage {:.3f}, spill {:.3f}", scores.interior_p95_mm,
+            scores.coverage, scores.spill);
 }
 
 /// Scores the newest projected frame, observer.rate_hz times per second, at low priority.
@@ -69,12 +67,14 @@ static void run_observer(service::Context& context) {
       save_ns = time_ns + to_ns(2s);
     }
     if (time_ns >= log_ns) {
-      log_scores(*judge, &score_log, time_ns);
+      if (const auto scores = scores_of(*judge);
+          !judge->empty() && score_log.is_due(time_ns, scores))
+        log_scores(scores);
       log_ns = time_ns + to_ns(5s);
     }
   }
   save(*judge, context);
-  log_scores(*judge, nullptr, now_ns());
+  if (!judge->empty()) log_scores(scores_of(*judge));
 }
 
 static Result<void> check_observer(const config::Rig& rig, const calib::Calibration& calibration) {

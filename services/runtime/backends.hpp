@@ -38,7 +38,7 @@ struct Backend {
   /// and leaves devices and services alone, which a running rig may use. Errors: those of open()
   /// that a person must change. Null: it opens the back end, unless that is exclusive.
   Result<void> (*check)(const Args&...) = nullptr;
-  /// The devices that are attached and that it could open. Null: it does not look for any.
+  /// Of a file: the devices that are attached and that it opens. Null: it does not look for any.
   std::vector<daemon::Attached> (*attached)(const daemon::Search&) = nullptr;
 
   /// Checks it: calls `check`, or else opens it, unless it is exclusive. Errors: theirs.

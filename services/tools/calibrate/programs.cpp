@@ -17,6 +17,7 @@
 #include "ipc/client/stream.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "ipc/msg/camera_frame.hpp"
+#include "services/tools/devices/ask.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -36,11 +37,6 @@ using namespace std::chrono_literals;
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (in_place && ::getppid() == parent) ::execv(arguments[0], arguments);
   ::_exit(127);
-}
-
-std::string program(const char* name) {
-  std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
 }
 
 /// Why a program ended, as it says itself after its name; else the last line of its log that is not
@@ -80,7 +76,8 @@ Result<void> not_stopped() {
 Result<OwnRig> OwnRig::start(const std::filesystem::path& rig_file, const std::string& name,
                              const std::vector<std::string>& settings,
                              const std::filesystem::path& log) {
-  std::vector<std::string> words{program("handcast"), "up", rig_file.string(), "--no-keeper"};
+  std::vector<std::string> words{devices::program("handcast"), "up", rig_file.string(),
+                                 "--no-keeper"};
   for (const auto& setting : settings) words.insert(words.end(), {"--set", setting});
   OwnRig rig(spawn(std::move(words), log), log);
   if (rig.child_ < 0)
@@ -135,7 +132,7 @@ Result<void> OwnRig::wait_for_images(const std::string& name) {
 Result<void> write_page(const std::filesystem::path& folder) {
   const auto log = folder / "page.log";
   const pid_t child =
-      spawn({program("handcast-calibration-page"), "--folder", folder.string()}, log);
+      spawn({devices::program("handcast-calibration-page"), "--folder", folder.string()}, log);
   if (child < 0) return fail(Errc::unavailable, "handcast-calibration-page is not installed");
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/draw/cpu/cpu_painter.hpp"
 
+#include "tests/renderer/draw/fill_contract.hpp"
 #include "tests/renderer/draw/painter_contract.hpp"
+#include "tests/renderer/draw/warp_contract.hpp"
 
 namespace handcast::renderer::test {
 

@@ -4,7 +4,9 @@
 #include <EGL/egl.h>
 #include <dlfcn.h>
 
+#include "tests/renderer/draw/fill_contract.hpp"
 #include "tests/renderer/draw/painter_contract.hpp"
+#include "tests/renderer/draw/warp_contract.hpp"
 
 namespace handcast::renderer::test {
 namespace {
