@@ -26,6 +26,7 @@ from __future__ import annotations
 import ctypes
 import os
 import pathlib
+import struct
 import sys
 import time
 from typing import Iterator, Mapping, NamedTuple, Optional, Sequence
@@ -70,6 +71,10 @@ class BothHands(ctypes.Structure):
             return None
         places = [tuple(joint.position_m) for joint in self.joint[index]]
         return places if numpy is None else numpy.array(places)
+
+
+# What BothHands begins with: time_ns and is_there.
+_HEAD_OF_HANDS = struct.Struct("=q2i")
 
 
 class _Image(ctypes.Structure):
@@ -203,12 +208,14 @@ class Hands:
                 yield hands
 
 
-def _both(hands: Mapping[str, Sequence]) -> list:
+def _both(hands: Mapping[str, Sequence]) -> tuple:
     """What is given of the left and of the right hand; None of one that is left out."""
-    for name in hands:
-        if name not in HANDS:
-            raise ValueError(f"there is no hand {name!r}; it is left or right")
-    return [hands.get(name) for name in HANDS]
+    left, right = hands.get("left"), hands.get("right")
+    if len(hands) > (left is not None) + (right is not None):
+        for name in hands:
+            if name not in HANDS:
+                raise ValueError(f"there is no hand {name!r}; it is left or right")
+    return left, right
 
 
 def _shaped(what: str, values: Sequence, count: int, columns: tuple) -> "numpy.ndarray":
@@ -224,20 +231,21 @@ class Pose:
     """The tracker of a rig with pose.backend = "external"."""
 
     def __init__(self, rig: "Rig"):
-        self._rig = rig
-        self._hands = BothHands()
-        self._joints = [numpy.frombuffer(self._hands.joint[side], numpy.float32).reshape(JOINTS, 8) for side in (0, 1)]
+        hands = BothHands()
+        self._rig, self._sent, self._bytes = rig, ctypes.pointer(hands), memoryview(hands).cast("B")
+        self._joints = [numpy.frombuffer(joints, numpy.float32).reshape(JOINTS, 8) for joints in hands.joint]
 
     def publish(self, hands: Mapping[str, Sequence], origin_ns: int) -> None:
         """Sends a sample. `hands`: by name ("left"), 26 x 8 as BothHands.joints() and joints_of_points() give them; a
         hand that is left out is not seen. `origin_ns`: when the sensor saw them."""
-        rig = self._rig
-        self._hands.time_ns = origin_ns
-        for side, joints in enumerate(_both(hands)):
-            self._hands.is_there[side] = joints is not None
-            if joints is not None:
-                self._joints[side][:] = _shaped("joints", joints, JOINTS, (8,))
-        rig._check(rig._library.handcast_send_hands(rig._handle, self._hands))
+        rig, both = self._rig, _both(hands)
+        _HEAD_OF_HANDS.pack_into(self._bytes, 0, origin_ns, both[0] is not None, both[1] is not None)
+        for side in (0, 1):
+            if (joints := both[side]) is not None:
+                fits = getattr(joints, "shape", None) == (JOINTS, 8)
+                self._joints[side][...] = joints if fits else _shaped("joints", joints, JOINTS, (8,))
+        if code := rig._library.handcast_send_hands(rig._handle, self._sent):
+            rig._check(code)
 
 
 class Landmarks:
