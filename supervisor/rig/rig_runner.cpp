@@ -328,9 +328,9 @@ void RigRunner::begin_stop(int exit_code) {
   stop_next();
 }
 
-/// Stops the next service, in the reverse order of the table.
+/// Stops the next service, in the reverse order of the table, guests last.
 void RigRunner::stop_next() {
-  if (auto* last = rig_.services.last_running()) return last->stop();
+  if (auto* last = rig_.services.next_to_stop()) return last->stop();
   finish();
 }
 

@@ -2,6 +2,7 @@
 #include "supervisor/rig/service_table.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include "ipc/base/clock.hpp"
 
@@ -64,10 +65,14 @@ bool ServiceTable::need_not_be_waited_for(const Service& service, std::int64_t n
          now - *service.first_start_ns() > seconds_to_ns(launch_.ready_s);
 }
 
-Service* ServiceTable::last_running() const {
-  const auto last = std::find_if(services_.rbegin(), services_.rend(),
-                                 [](const auto& service) { return service->is_running(); });
-  return last == services_.rend() ? nullptr : last->get();
+Service* ServiceTable::next_to_stop() const {
+  Service* guest = nullptr;
+  for (const auto& service : std::views::reverse(services_)) {
+    if (!service->is_running()) continue;
+    if (service->spec().instance_of != "guest") return service.get();
+    if (!guest) guest = service.get();
+  }
+  return guest;
 }
 
 std::uint64_t ServiceTable::revision() const {

@@ -37,8 +37,9 @@ class ServiceTable {
   Service* next_to_begin(std::int64_t now_ns) const;
   /// True if each service has been ready, has given up, or was started more than ready_s ago.
   bool has_come_up(std::int64_t now_ns) const;
-  /// The last service that has a process; null if none has.
-  Service* last_running() const;
+  /// The last service that has a process, a guest only if no other has: what it feeds would say
+  /// that nothing comes. Null if none has.
+  Service* next_to_stop() const;
 
   /// Incremented whenever Service::saved() of a service may have changed.
   std::uint64_t revision() const;

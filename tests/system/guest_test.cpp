@@ -16,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// A tracker in Python that sees no hands. It tells its pid in a file.
 constexpr const char* kTracker = R"(
@@ -87,9 +88,11 @@ TEST_F(Guest, IsStartedWithTheRigStartedAgainAndStoppedWithIt) {
   EXPECT_GE(service("pose_guest")["restarts"], 1);
   expect_no_harm();
   const auto second = tracker();
+  const auto before_stop = rig->log().size();
   rig->signal(SIGINT);
   EXPECT_EQ(rig->wait(), 0);
   EXPECT_FALSE(is_alive(second));
+  EXPECT_THAT(rig->log().substr(before_stop), Not(HasSubstr("nothing was sent")));
   EXPECT_THAT(traces(), testing::IsEmpty());
 }
 

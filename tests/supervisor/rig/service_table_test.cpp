@@ -114,10 +114,23 @@ TEST_F(Table, TheLastThatRunsIsTheNextToStop) {
   auto& camera = add("camera", {}, kWorks);
   auto& pose = add("pose", {}, kWorks);
   add("landmarks", {"camera"}, kWorks);
-  EXPECT_EQ(table_.last_running(), nullptr);
+  EXPECT_EQ(table_.next_to_stop(), nullptr);
   camera.start();
   pose.start();
-  EXPECT_EQ(table_.last_running(), &pose);
+  EXPECT_EQ(table_.next_to_stop(), &pose);
+}
+
+TEST_F(Table, AGuestStopsAfterWhatItFeeds) {
+  auto& pose = add("pose", {}, kWorks);
+  std::ofstream(scratch_.path() / "handcast-guest") << "#!/bin/bash\n" << kWorks << "\n";
+  chmod((scratch_.path() / "handcast-guest").c_str(), 0755);
+  auto& guest = table_.add({.name = "pose_guest", .needs = {"pose"}, .instance_of = "guest"});
+  pose.start();
+  guest.start();
+  EXPECT_EQ(table_.next_to_stop(), &pose);
+  pose.stop();
+  run_until([&] { return !pose.is_running(); });
+  EXPECT_EQ(table_.next_to_stop(), &guest);
 }
 
 TEST_F(Table, AServiceIsAddedAtItsPlaceAndRemovedByItsName) {
