@@ -18,6 +18,7 @@
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
 #include "ipc/base/home.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/quote.hpp"
 #include "ipc/base/rig_name.hpp"
 
@@ -281,9 +282,7 @@ Result<Rig> change_rig(const Rig& rig, const NamedText& layer,
 /// Names the rig that was installed under the name of a file that is not there.
 static Error with_installed(Error error, const std::filesystem::path& file) {
   std::error_code unknown;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
-  const auto installed =
-      program.parent_path().parent_path() / "share/handcast/rigs" / file.filename();
+  const auto installed = share_folder() / "rigs" / file.filename();
   if (!std::filesystem::exists(file, unknown) &&
       std::filesystem::is_regular_file(installed, unknown))
     error.what += "; there is " + installed.string();

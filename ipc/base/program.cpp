@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -54,6 +55,20 @@ int run_program(std::string_view name, int argc, char** argv,
   const bool flushed = std::fflush(stdout) == 0;
   if (flushed && std::ferror(stdout) == 0) return exit_code;
   return complain(kExitRetry, name, "the output cannot be written: " + inherited::reason_of(errno));
+}
+
+std::filesystem::path program_folder() {
+  std::error_code unknown;
+  return std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+}
+
+std::filesystem::path share_folder() {
+  return program_folder().parent_path() / "share" / "handcast";
+}
+
+std::filesystem::path assets_folder() {
+  const char* const assets = std::getenv("HANDCAST_ASSETS");
+  return assets && *assets ? std::filesystem::path(assets) : share_folder();
 }
 
 }  // namespace handcast

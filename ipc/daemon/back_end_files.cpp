@@ -7,15 +7,16 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "ipc/base/program.hpp"
+
 namespace handcast::daemon {
 namespace fs = std::filesystem;
 
 std::map<std::string, fs::path, std::less<>> back_end_files(std::string_view service) {
   if (service.ends_with('2')) service.remove_suffix(1);
   std::error_code absent;
-  const auto program = fs::read_symlink("/proc/self/exe", absent);
   const char* const more = ::secure_getenv("LD_LIBRARY_PATH");
-  std::istringstream places((program.parent_path().parent_path() / "lib").string() + ":" +
+  std::istringstream places((program_folder().parent_path() / "lib").string() + ":" +
                             (more ? more : ""));
   std::map<std::string, fs::path, std::less<>> files;
   for (std::string place; std::getline(places, place, ':');)

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ipc/base/input_file.hpp"
+#include "ipc/base/program.hpp"
 #include "renderer/media/colour_film.hpp"
 
 namespace handcast::renderer {
@@ -15,8 +16,7 @@ namespace fs = std::filesystem;
 /// A function of libhandcast-film.so. Errors: bad_config.
 template <class Function>
 static Result<Function*> function_of(const char* name) {
-  const auto library = fs::read_symlink("/proc/self/exe").parent_path().parent_path() /
-                       "lib/handcast/libhandcast-film.so";
+  const auto library = program_folder().parent_path() / "lib/handcast/libhandcast-film.so";
   void* loaded = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);  // it stays loaded
   if (!loaded) return fail(Errc::bad_config, fmt::format("films cannot be read: {}", ::dlerror()));
   const auto function = reinterpret_cast<Function*>(::dlsym(loaded, name));

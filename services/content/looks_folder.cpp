@@ -2,15 +2,12 @@
 #include "services/content/looks_folder.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+
+#include "ipc/base/program.hpp"
 
 namespace handcast::content {
 
-std::filesystem::path looks_folder() {
-  if (const char* assets = std::getenv("HANDCAST_ASSETS"); assets && *assets != '\0')
-    return std::filesystem::path(assets) / "looks";
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../share/handcast/looks";
-}
+std::filesystem::path looks_folder() { return assets_folder() / "looks"; }
 
 std::vector<std::string> look_names() {
   std::vector<std::string> names;

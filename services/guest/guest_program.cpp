@@ -19,6 +19,7 @@
 
 #include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/quote.hpp"
 #include "ipc/base/wait_status.hpp"
 #include "ipc/daemon/contract.hpp"
@@ -41,10 +42,7 @@ Result<Pipe> open_pipe() {
 
 /// Python finds handcast.py, which is installed with the programs.
 void add_python_folder() {
-  std::error_code absent;
-  const auto program = fs::read_symlink("/proc/self/exe", absent);
-  const auto folder =
-      (program.parent_path() / "../share/handcast/python").lexically_normal().string();
+  const auto folder = (share_folder() / "python").string();
   const char* const before = getenv("PYTHONPATH");
   setenv("PYTHONPATH", before ? (folder + ":" + before).c_str() : folder.c_str(), 1);
   setenv("PYTHONUNBUFFERED", "1", 0);  // what it prints is seen when it is printed

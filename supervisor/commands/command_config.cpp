@@ -20,6 +20,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/unique_fd.hpp"
 #include "ipc/daemon/check_word.hpp"
 #include "supervisor/base/spawn.hpp"

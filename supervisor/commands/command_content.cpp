@@ -12,6 +12,7 @@
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/content_state.hpp"
 #include "supervisor/commands/choose_rig.hpp"
@@ -39,7 +40,7 @@ void print_looks() {
                               std::pair("Transition", "transitions")};
   std::array<std::vector<std::string>, kKinds.size()> names;
   std::error_code absent;
-  const auto folder = program_folder() / "../share/handcast/looks";
+  const auto folder = share_folder() / "looks";
   for (const auto& file : std::filesystem::directory_iterator(folder, absent)) {
     if (file.path().extension() != ".fs") continue;
     const auto text = read_input(file.path(), 1 << 20).value_or("");

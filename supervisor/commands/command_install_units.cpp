@@ -8,6 +8,7 @@
 
 #include "config/rig.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/write_whole.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "supervisor/commands/verbs.hpp"

@@ -5,6 +5,7 @@
 
 #include "ipc/base/inherited.hpp"
 #include "ipc/base/log.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/control/rig_address.hpp"
 #include "ipc/daemon/contract.hpp"
 #include "supervisor/commands/verbs.hpp"

@@ -103,10 +103,6 @@ void add_rig(CommandLine& line, std::string& rig) {
   line.add("--rig NAME", rig, "Which rig, if several are up");
 }
 
-std::filesystem::path program_folder() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
-}
-
 int complain(int exit_code, std::string_view sentence) {
   log::put(log::for_journal(log::Level::error, fmt::format("handcast: {}\n", printable(sentence))));
   return exit_code;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,9 +36,6 @@ CommandLine command_line_of(std::string_view verb, std::string notes = "");
 void add_rig(CommandLine& line, std::string& rig);
 /// The range of --seconds, which fits into an int64 of nanoseconds.
 inline constexpr CommandLine::Range kSomeSeconds{0.001, 1e9};
-
-/// The folder of this program, which also holds the daemons and the verbs that are programs.
-std::filesystem::path program_folder();
 
 /// Runs a verb. Returns an exit code (ipc/base/exit_code.hpp).
 /// @{

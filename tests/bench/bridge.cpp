@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/hand_poses.hpp"
 #include "ipc/msg/projection.hpp"
@@ -113,9 +114,7 @@ void collect(Streams& from, std::int64_t ahead_ns, Samples& samples, std::vector
     }
 }
 
-std::filesystem::path programs() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
-}
+std::filesystem::path programs() { return program_folder(); }
 
 Words up(const std::string& name, const Words& more) {
   const auto root = programs().parent_path().parent_path();

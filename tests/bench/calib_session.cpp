@@ -19,6 +19,7 @@
 
 #include "calib/calibration.hpp"
 #include "ipc/base/clock.hpp"
+#include "ipc/base/program.hpp"
 #include "tests/bench/goals.hpp"
 #include "tests/scratch.hpp"
 
@@ -78,7 +79,7 @@ void run(const std::vector<std::string>& words, double reading_s, Session& sessi
 std::vector<Goal> measure(double reading_s) {
   const test::Scratch scratch;
   setenv("HANDCAST_SCOPE", scratch.path().c_str(), 1);
-  const auto folder = fs::read_symlink("/proc/self/exe").parent_path();
+  const auto folder = program_folder();
   const std::string handcast = folder / "handcast", rig = scratch.path() / "twin.toml";
   // 30 images per second: a small computer draws all of them while it measures.
   // The truth stays what it is when the rig gets the calibration that was measured.

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "ipc/base/program.hpp"
 #include "tests/bench/rings_transports.hpp"
 
 namespace handcast::bench {
@@ -19,7 +20,7 @@ constexpr int kWork_us = 400'000;
 
 std::filesystem::path folder_of_programs() {
   if (const char* folder = ::getenv("HANDCAST_BIN")) return std::filesystem::absolute(folder);
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  return program_folder();
 }
 
 std::string text_of(const std::filesystem::path& file) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/client/rig_ring.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/guest_streams.hpp"
@@ -72,8 +73,7 @@ void track(unsigned pause_us) {
 
 void track_in_python(double seconds) {
   const std::filesystem::path root(HANDCAST_BENCH_ROOT);
-  const auto library = std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() /
-                       "lib/libhandcast.so.0";
+  const auto library = program_folder().parent_path() / "lib/libhandcast.so.0";
   ::setenv("PYTHONPATH", (root / "scripts").c_str(), 1);
   ::setenv("HANDCAST_LIBRARY", library.c_str(), 1);
   const auto program = root / "tests/bench/external_tracker.py";

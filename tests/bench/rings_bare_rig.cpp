@@ -8,6 +8,7 @@
 #include <fstream>
 #include <vector>
 
+#include "ipc/base/program.hpp"
 #include "tests/bench/rings_transports.hpp"
 
 namespace handcast::bench {
@@ -32,7 +33,7 @@ std::vector<std::string> command_of(const std::filesystem::path& folder, bool st
 }  // namespace
 
 BarePrograms::BarePrograms() {
-  const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  const auto bin = program_folder();
   if (!std::filesystem::exists(bin / "handcast") ||
       !std::filesystem::exists(bin / "handcast_bare_daemon"))
     give_up("handcast or handcast_bare_daemon has not been built");

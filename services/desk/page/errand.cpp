@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/unique_fd.hpp"
 
 namespace handcast::desk {
@@ -167,9 +168,6 @@ void Errand::run(std::vector<std::string> words) {
   state_.is_running = false;
 }
 
-std::string program_beside(const char* name) {
-  std::error_code gone;
-  return std::filesystem::read_symlink("/proc/self/exe", gone).parent_path() / name;
-}
+std::string program_beside(const char* name) { return program_folder() / name; }
 
 }  // namespace handcast::desk

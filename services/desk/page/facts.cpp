@@ -7,7 +7,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "config/second_view.hpp"
 #include "ipc/base/input_file.hpp"
 #include "ipc/base/join.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/daemon/description.hpp"
 #include "services/desk/cues/cue_list.hpp"
 #include "services/desk/page/json_text.hpp"
@@ -26,21 +26,13 @@ using nlohmann::json;
 
 constexpr std::size_t kMostTargets = 4;  ///< of a cue, in words
 
-std::filesystem::path share_folder() {
-  std::error_code gone;
-  return std::filesystem::read_symlink("/proc/self/exe", gone).parent_path() / "../share/handcast";
-}
-
 /// Whether a shader is one that is laid over others, or leads from one to another.
 bool is_no_look(const std::string& text) {
   return text.find(R"("CATEGORIES": ["Filter")") != std::string::npos ||
          text.find(R"("CATEGORIES": ["Transition")") != std::string::npos;
 }
 
-std::filesystem::path looks_folder() {
-  const char* assets = std::getenv("HANDCAST_ASSETS");
-  return (assets && *assets ? std::filesystem::path(assets) : share_folder()) / "looks";
-}
+std::filesystem::path looks_folder() { return assets_folder() / "looks"; }
 
 std::filesystem::path picture_file(const std::filesystem::path& look) {
   return std::filesystem::path(look).replace_extension(".png");

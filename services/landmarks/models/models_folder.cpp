@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 
+#include "ipc/base/program.hpp"
+
 namespace handcast::landmarks {
 namespace fs = std::filesystem;
 namespace {
@@ -18,11 +20,7 @@ fs::path users_folder() {
   return data / "handcast" / "models";
 }
 
-fs::path installed_folder() {
-  std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-  return (program.parent_path() / ".." / "share" / "handcast" / "models").lexically_normal();
-}
+fs::path installed_folder() { return share_folder() / "models"; }
 
 }  // namespace
 
