@@ -62,9 +62,7 @@ std::filesystem::path program_folder() {
   return std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
 }
 
-std::filesystem::path share_folder() {
-  return program_folder().parent_path() / "share" / "handcast";
-}
+std::filesystem::path share_folder() { return program_folder().parent_path() / "share/handcast"; }
 
 std::filesystem::path assets_folder() {
   const char* const assets = std::getenv("HANDCAST_ASSETS");

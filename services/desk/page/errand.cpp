@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/base/program.hpp"
 #include "ipc/base/unique_fd.hpp"
 
 namespace handcast::desk {
@@ -167,7 +166,5 @@ void Errand::run(std::vector<std::string> words) {
   state_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   state_.is_running = false;
 }
-
-std::string program_beside(const char* name) { return program_folder() / name; }
 
 }  // namespace handcast::desk

@@ -57,7 +57,4 @@ class Errand {
   std::thread thread_;
 };
 
-/// The path of a program in the folder of this one.
-std::string program_beside(const char* name);
-
 }  // namespace handcast::desk

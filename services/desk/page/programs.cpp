@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/base/quote.hpp"
 #include "services/desk/page/json_text.hpp"
 
@@ -69,7 +70,7 @@ Result<void> Programs::start_recording(std::string name) {
   if (failed)
     return fail(Errc::unavailable, fmt::format("the folder {} cannot be made: {}", folder_.string(),
                                                failed.message()));
-  auto started = recorder_.start({program_beside("handcast-record"), (folder_ / name).string(),
+  auto started = recorder_.start({program_folder() / "handcast-record", (folder_ / name).string(),
                                   "--rig", rig_, "--seconds", std::to_string(kLongestRecording_s)});
   if (!started) return fail(Errc::unavailable, "A recording is being made already.");
   name_ = std::move(name);
@@ -85,7 +86,7 @@ Result<void> Programs::start_doctor() {
   if (rig_file_.empty())
     return fail(Errc::bad_config, "The desk does not know the rig file; see `handcast doctor`.");
   if (doctor_.start(
-          {program_beside("handcast-doctor"), rig_file_.string(), "--json", "--seconds", "3"}))
+          {program_folder() / "handcast-doctor", rig_file_.string(), "--json", "--seconds", "3"}))
     return {};
   return fail(Errc::unavailable, "The doctor is at work already.");
 }

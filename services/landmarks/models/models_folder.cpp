@@ -20,8 +20,6 @@ fs::path users_folder() {
   return data / "handcast" / "models";
 }
 
-fs::path installed_folder() { return share_folder() / "models"; }
-
 }  // namespace
 
 Result<fs::path> models_folder(const std::string& configured) {
@@ -30,8 +28,8 @@ Result<fs::path> models_folder(const std::string& configured) {
     return fail(Errc::bad_config, configured + ": there is no such folder of models");
   if (!configured.empty()) return configured;
   if (auto named = from_environment("HANDCAST_MODELS"); !named.empty()) return named;
-  if (fs::is_directory(installed_folder(), ignored)) return installed_folder();
-  return users_folder();
+  const auto installed = share_folder() / "models";
+  return fs::is_directory(installed, ignored) ? installed : users_folder();
 }
 
 }  // namespace handcast::landmarks

@@ -14,10 +14,10 @@
 #include <utility>
 
 #include "ipc/base/clock.hpp"
+#include "ipc/base/program.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/daemon/stop_signal.hpp"
 #include "ipc/msg/camera_frame.hpp"
-#include "services/tools/devices/ask.hpp"
 
 namespace handcast::calibrate {
 namespace {
@@ -76,7 +76,7 @@ Result<void> not_stopped() {
 Result<OwnRig> OwnRig::start(const std::filesystem::path& rig_file, const std::string& name,
                              const std::vector<std::string>& settings,
                              const std::filesystem::path& log) {
-  std::vector<std::string> words{devices::program("handcast"), "up", rig_file.string(),
+  std::vector<std::string> words{program_folder() / "handcast", "up", rig_file.string(),
                                  "--no-keeper"};
   for (const auto& setting : settings) words.insert(words.end(), {"--set", setting});
   OwnRig rig(spawn(std::move(words), log), log);
@@ -132,7 +132,7 @@ Result<void> OwnRig::wait_for_images(const std::string& name) {
 Result<void> write_page(const std::filesystem::path& folder) {
   const auto log = folder / "page.log";
   const pid_t child =
-      spawn({devices::program("handcast-calibration-page"), "--folder", folder.string()}, log);
+      spawn({program_folder() / "handcast-calibration-page", "--folder", folder.string()}, log);
   if (child < 0) return fail(Errc::unavailable, "handcast-calibration-page is not installed");
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;

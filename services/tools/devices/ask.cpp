@@ -11,7 +11,6 @@
 #include <filesystem>
 
 #include "ipc/base/exit_code.hpp"
-#include "ipc/base/program.hpp"
 #include "ipc/base/unique_fd.hpp"
 
 namespace handcast::devices {
@@ -47,8 +46,6 @@ std::string read_to_end(int fd) {
 }
 
 }  // namespace
-
-std::string program(const std::string& name) { return program_folder() / name; }
 
 std::optional<Answer> ask(std::vector<std::string> words, int what) {
   std::array<int, 2> ends{};

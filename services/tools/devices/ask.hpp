@@ -12,9 +12,6 @@ struct Answer {
   std::string text;
 };
 
-/// The path of a program in the folder of this one.
-std::string program(const std::string& name);
-
 /// Runs a program, of which words[0] is the path, and returns what it wrote to its descriptor
 /// `what` (STDOUT_FILENO or STDERR_FILENO). Empty if it cannot be started.
 std::optional<Answer> ask(std::vector<std::string> words, int what);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "ipc/base/program.hpp"
 #include "services/camera/v4l2/format.hpp"
 #include "services/camera/v4l2/list.hpp"
 #include "services/tools/devices/ask.hpp"
@@ -29,7 +30,7 @@ std::vector<Attached> list_of(const std::optional<Answer>& answer) {
 }  // namespace
 
 std::vector<Attached> cameras_of_files(const Search& search, const std::string& file) {
-  std::vector<std::string> words{program("handcast-camera"), "--attached"};
+  std::vector<std::string> words{program_folder() / "handcast-camera", "--attached"};
   if (!search.name.empty()) words.push_back("--named=" + search.name);
   if (!search.opens) words.emplace_back("--untouched");
   auto found = list_of(ask(std::move(words), STDOUT_FILENO));

@@ -5,13 +5,14 @@
 #include <unistd.h>
 
 #include "ipc/base/join.hpp"
+#include "ipc/base/program.hpp"
 #include "services/tools/devices/ask.hpp"
 
 namespace handcast::doctor {
 
 std::string try_in_its_program(const std::string& service, int priority) {
   const auto answer = devices::ask(
-      {devices::program("handcast-" + service), "--try-priority", fmt::to_string(priority)},
+      {program_folder() / ("handcast-" + service), "--try-priority", fmt::to_string(priority)},
       STDOUT_FILENO);
   if (!answer || answer->exit_code != 0) return "its program does not start";
   return answer->text.substr(0, answer->text.find('\n'));
@@ -27,7 +28,7 @@ Finding examine_real_time(const config::Rig& rig, const TryPriority& may) {
       permitted.push_back(fmt::format("{} {}", service, priority));
     } else {
       denied.push_back(fmt::format("{} {} ({})", service, priority, why));
-      programs.push_back(devices::program(std::string("handcast-") + service));
+      programs.push_back(program_folder() / (std::string("handcast-") + service));
     }
   }
   if (permitted.empty() && denied.empty())

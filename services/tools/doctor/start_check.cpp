@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "ipc/base/exit_code.hpp"
+#include "ipc/base/program.hpp"
 #include "services/tools/devices/ask.hpp"
 
 namespace handcast::doctor {
@@ -29,7 +30,7 @@ std::vector<Finding> judge_check(int exit_code, const std::string& complaints) {
 
 std::vector<Finding> examine_start(const std::string& file,
                                    const std::vector<std::string>& settings) {
-  std::vector<std::string> words{devices::program("handcast"), "config", "--check", file};
+  std::vector<std::string> words{program_folder() / "handcast", "config", "--check", file};
   for (const auto& setting : settings) words.insert(words.end(), {"--set", setting});
   if (const auto answer = devices::ask(std::move(words), STDERR_FILENO))
     return judge_check(answer->exit_code, answer->text);
