@@ -54,13 +54,14 @@ Result<Calibration> load_calibration(const std::filesystem::path& file,
     return fail(
         Errc::bad_config,
         "projector2.calibration is empty: a second projector needs a calibration of its own, "
-        "of the same camera");
+        "which `handcast calibrate --second-projector` makes");
   auto other = load_calibration(second.calibration, second.packing);
   if (!other) return fail_in("projector2.calibration", other.error());
   if (!is_same(calibration->camera, other->camera))
     return fail(Errc::bad_config,
                 fmt::format("projector2.calibration: {} has another lens of the camera than the "
-                            "calibration of the rig; copy that one, and measure only `screen` anew",
+                            "calibration of the rig; measure it anew with `handcast calibrate "
+                            "--second-projector`",
                             second.calibration));
   calibration->projector2 = SecondProjector{other->projector_device, other->projector};
   return calibration;

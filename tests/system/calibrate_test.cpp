@@ -103,6 +103,29 @@ TEST_F(Calibrate, TheTwinsProjectorIsFoundByStructuredLight) {
           << px.x << " " << px.y << " at " << depth_m << " m";
 }
 
+TEST_F(Calibrate, ASecondProjectorIsFoundInTheSameWay) {
+  const auto truth = *calib::load_calibration("config/calibrations/right_of_two.toml");
+  const auto here = [](const char* file) { return fs::absolute(file).string(); };
+  std::ofstream(rig_file()) << "calibration = \"" << here("config/calibrations/left_of_two.toml")
+                            << "\"\n[projector2]\nbackend = \"twin\"\nlatency_ms = 4\n";
+  const auto outcome = calibrate(
+      {"screen", "--second-projector", "--projector", "1024x768", "--most-s", "150", "--apply",
+       "--set", "twin.geometry.calibration=" + here("config/calibrations/right_of_two.toml"),
+       "--set", "twin.prop.light_late_ms=5"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.log;
+  const auto rig = config::load_rig(rig_file(), {});
+  ASSERT_TRUE(rig) << rig.error().what;
+  EXPECT_NEAR(rig->projector2.latency_ms, 9, 1) << outcome.output << outcome.log;
+  EXPECT_EQ(rig->projector.latency_ms, config::Rig().projector.latency_ms);
+  ASSERT_EQ(rig->projector2.calibration, scratch_.path() / "twin_projector2_calibration.toml");
+  const auto found = calib::load_calibration(rig->projector2.calibration);
+  ASSERT_TRUE(found) << found.error().what;
+  for (const glm::dvec2 px : {glm::dvec2(180, 135), {540, 135}, {180, 405}, {540, 405}})
+    EXPECT_LT(
+        glm::distance(found->projector.pixel_of(px, 0.73), truth.projector.pixel_of(px, 0.73)), 2)
+        << px.x << " " << px.y;
+}
+
 TEST_F(Calibrate, TheTwinsTrackerIsFoundByAReflector) {
   const auto outcome = calibrate(
       {"tracker", "--reflector", "8", "--most-s", "45", "--set", "twin.geometry.tracker_mm=20",

@@ -51,6 +51,7 @@ class Session:
     rig_file: str
     board: str   # for commands; empty: the usual one
     folder: str  # for commands; empty: the one beside the rig file
+    option: str = ""  # for commands; empty: none
     steps: list = field(default_factory=list)
 
     def missing(self):
@@ -59,7 +60,7 @@ class Session:
 
     def command(self, *more):
         """`handcast calibrate` for this rig and this board."""
-        return " ".join(filter(None, ["handcast calibrate", self.rig_file, *more, self.board and f"--board {self.board}"]))
+        return " ".join(filter(None, ["handcast calibrate", self.rig_file, *more, self.option, self.board and f"--board {self.board}"]))
 
     def command_to_go_on(self):
         """The command that goes on with this session."""
@@ -100,7 +101,7 @@ def read_session(folder):
     file = folder / "report.json"
     values = read_json(file)
     try:
-        session = Session(*(str(values[key]) for key in ("rig", "rig_file", "board", "folder")))
+        session = Session(*(str(values[key]) for key in ("rig", "rig_file", "board", "folder")), option=str(values.get("option", "")))
         for step in values["steps"]:
             session.steps.append(Step(step["step"], str(step["made"]), bool(step["is_done"]), read_findings(folder / f"{step['step']}.json")))
     except (KeyError, TypeError) as error:

@@ -52,6 +52,7 @@ std::string print_report(const std::string& rig, const NamedFiles& command,
                   {"rig_file", command.rig_file},
                   {"board", command.board},
                   {"folder", command.folder},
+                  {"option", command.option},
                   {"steps", std::move(reported)}});
 }
 

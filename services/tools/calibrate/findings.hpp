@@ -52,8 +52,9 @@ std::string print_outcome(const Outcome& outcome);
 /// What a command must name to go on with a session.
 struct NamedFiles {
   std::string rig_file;
-  std::string board;   ///< empty: the usual one
-  std::string folder;  ///< empty: the one beside the rig file
+  std::string board;     ///< empty: the usual one
+  std::string folder;    ///< empty: the one beside the rig file
+  std::string option{};  ///< "--second-projector"; else empty
 };
 
 /// A step that the rig has need of, in the report.

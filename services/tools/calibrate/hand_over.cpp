@@ -26,8 +26,9 @@ fs::path truth_of(const Options& options) {
 }
 
 /// The twin whose truth is whatever calibration the rig names.
-bool is_true_by_name(const config::Rig& rig) {
-  return rig.camera.backend == "twin" && rig.twin.geometry.calibration.empty();
+bool is_true_by_name(const Options& options, const config::Rig& rig) {
+  return !options.second_projector && rig.camera.backend == "twin" &&
+         rig.twin.geometry.calibration.empty();
 }
 
 /// Keeps the truth of a twin. A file of an earlier call stays: if its name was not put into the rig
@@ -46,9 +47,15 @@ std::vector<config::MeasuredSetting> names_of(const Options& options, const conf
   if (!session.has_measured() || !fs::exists(session.target(), unknown)) return names;
   if (fs::path(rig.calibration) != session.target())
     names.push_back({"calibration", name_from(options.rig_file, session.target())});
-  if (is_true_by_name(rig) && fs::exists(truth_of(options), unknown))
+  if (is_true_by_name(options, rig) && fs::exists(truth_of(options), unknown))
     names.push_back({"twin.geometry.calibration", name_from(options.rig_file, truth_of(options))});
   return names;
+}
+
+/// Where the rig has what was measured of its second projector.
+std::string of_second_projector(const std::string& path) {
+  return path == "calibration" ? "projector2.calibration"
+                               : config::name_at_projector(config::Viewpoint::second, path);
 }
 
 std::string heading_of(const fs::path& rig_file) {
@@ -94,9 +101,10 @@ Result<std::string> apply_settings(const fs::path& rig_file,
 Result<void> hand_over(const Options& options, const config::Rig& rig,
                        const calib::Calibration& running, Session& session) {
   const auto file = config::measured_file_of(options.rig_file);
-  const int above = newest_number({rig.calibration, session.target(), file});
+  const int above =
+      newest_number({rig.calibration, rig.projector2.calibration, session.target(), file});
   if (session.is_pending()) {
-    if (is_true_by_name(rig))
+    if (is_true_by_name(options, rig))
       if (auto kept = keep_truth(options, running); !kept) return kept;
     const auto finished = session.finish(above);
     if (!finished) return tl::make_unexpected(finished.error());
@@ -105,6 +113,8 @@ Result<void> hand_over(const Options& options, const config::Rig& rig,
   auto settings = names_of(options, rig, session);
   const auto measured = session.settings();
   settings.insert(settings.end(), measured.begin(), measured.end());
+  if (options.second_projector)
+    for (auto& setting : settings) setting.path = of_second_projector(setting.path);
   if (settings.empty()) return {};
   const auto applied = options.apply
                            ? apply_settings(options.rig_file, settings, above)
@@ -118,7 +128,8 @@ Result<void> hand_over(const Options& options, const config::Rig& rig,
 
 Result<void> undo(const Options& options, const config::Rig& rig) {
   const auto measured = config::measured_file_of(fs::absolute(options.rig_file));
-  const auto newest = newest_number({rig.calibration, measured});
+  const auto& second = rig.projector2.calibration;
+  const auto newest = newest_number({rig.calibration, second, measured});
   if (newest == 0)
     return fail(Errc::bad_config, fmt::format("nothing is kept of {} that could be taken back",
                                               options.rig_file.string()));
@@ -126,9 +137,11 @@ Result<void> undo(const Options& options, const config::Rig& rig) {
     if (newest_number({file}) != newest) return {};
     return take_back(file, is_usable).map([](const auto& done) { fmt::print("{}\n", done); });
   };
-  auto taken = take(rig.calibration, [](const fs::path& kept) {
+  const auto is_calibration = [](const fs::path& kept) {
     return calib::load_calibration(kept).map([](const auto&) {});
-  });
+  };
+  auto taken = take(rig.calibration, is_calibration);
+  if (taken) taken = take(second, is_calibration);
   if (taken)
     taken = take(measured, [](const fs::path& kept) {
       return config::read_measured(kept).map([](const auto&) {});

@@ -16,6 +16,7 @@
 #include "ipc/daemon/stop_signal.hpp"
 #include "services/tools/calibrate/hand_over.hpp"
 #include "services/tools/calibrate/programs.hpp"
+#include "services/tools/calibrate/second_projector.hpp"
 #include "services/tools/calibrate/steps.hpp"
 #include "services/tools/calibrate/tracker_tasks.hpp"
 
@@ -93,7 +94,7 @@ Result<int> print_board(const Options& options) {
 void name_anew(Options& options, config::Rig& rig, const std::string& devices) {
   const std::filesystem::path old(rig.calibration);
   rig.calibration = (old.parent_path() / (old.stem().string() + "." + devices + ".toml")).string();
-  if (options.folder == default_folder(options.rig_file))
+  if (options.folder == default_folder(options))
     options.folder.replace_extension(devices + ".calibration");
 }
 
@@ -104,6 +105,11 @@ Result<int> run(Options options) {
   const auto done = [] { return kExitDone; };
   // Also if the calibration cannot be read any more.
   if (options.undo) return undo(options, *rig).map(done);
+  const auto named = options.second_projector ? rig->projector2.calibration : rig->calibration;
+  if (auto turned = turn_to_projector(*rig, options); !turned)
+    return tl::make_unexpected(turned.error());
+  rig = config::load_rig(options.rig_file, options.settings);
+  if (!rig) return tl::make_unexpected(rig.error());
   if (auto possible = check_steps(options, *rig); !possible)
     return tl::make_unexpected(possible.error());
   // Before anything is forgotten. Without these, nothing may be left to be measured.
@@ -120,7 +126,7 @@ Result<int> run(Options options) {
     return judge_points(options.points, running->calibration.camera).map(done);
   if (options.correct) return correct_tracker(options, *rig, running->calibration).map(done);
   if (options.check) return check_installed(options, *rig, *running);
-  const auto named = rig->calibration;
+  rig->calibration = named;
   if (!running->new_devices.empty()) name_anew(options, *rig, running->new_devices);
   auto used = running->calibration;
   if (used.camera_device.empty()) used.camera_device = own.camera;

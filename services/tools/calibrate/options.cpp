@@ -100,6 +100,13 @@ Result<void> check_combination(const std::vector<std::string>& names, const Opti
     if (is_given(task.option)) return check_task(task, names, options);
   if (options.reflector_mm > 0 && !measures(options, Step::tracker))
     return fail(Errc::bad_config, "--reflector belongs to the step `tracker`; add it");
+  for (const auto step : options.steps)
+    if (!concerns(options, step))
+      return fail(Errc::bad_config, fmt::format("--second-projector measures screen and light; {} "
+                                                "is measured without it",
+                                                config::word_of(step)));
+  if (options.second_projector && options.reflector_mm > 0)
+    return fail(Errc::bad_config, "--second-projector measures no tracker; leave --reflector out");
   if (!options.photodiode.empty() && !measures(options, Step::light))
     return fail(Errc::bad_config, "--photodiode belongs to the step `light`; add it");
   return {};
@@ -107,8 +114,13 @@ Result<void> check_combination(const std::vector<std::string>& names, const Opti
 
 }  // namespace
 
-std::filesystem::path default_folder(const std::filesystem::path& rig_file) {
-  return std::filesystem::path(rig_file).replace_extension(".calibration");
+std::filesystem::path default_folder(const Options& options) {
+  return std::filesystem::path(options.rig_file)
+      .replace_extension(options.second_projector ? ".projector2.calibration" : ".calibration");
+}
+
+bool concerns(const Options& options, Step step) {
+  return !options.second_projector || step == Step::screen || step == Step::light;
 }
 
 Result<Options> parse(int argc, char** argv) {
@@ -135,6 +147,8 @@ Result<Options> parse(int argc, char** argv) {
   line.add("--projector SIZE", projector,
            "Size of the projector's image, e.g. 1920x1080: only for a rig without a calibration, "
            "or for other devices than the calibrated ones");
+  line.add("--second-projector", options.second_projector,
+           "Measures the second projector (screen and light) after the first one");
   line.add("--folder DIR", options.folder,
            "Where pictures, results and the report go; default: RIG.calibration");
   line.add("--most-s N", options.most_s,
@@ -190,8 +204,7 @@ Result<Options> parse(int argc, char** argv) {
     if (!read) return tl::make_unexpected(read.error());
     *size = *read;
   }
-  if (options.folder.empty() && !options.rig_file.empty())
-    options.folder = default_folder(options.rig_file);
+  if (options.folder.empty() && !options.rig_file.empty()) options.folder = default_folder(options);
   auto fits = check_combination(line.given(), options);
   if (fits) fits = check_rig_file(options);
   return fits.map([&] { return options; });

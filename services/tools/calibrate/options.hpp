@@ -38,16 +38,19 @@ struct Options {
   /// Diameter of the reflector on an index finger tip; 0: the tracker is measured by a hand's
   /// landmarks.
   double reflector_mm = 0;
-  std::filesystem::path points;  ///< folder of recorded points; nothing else is done
-  bool correct = false;          ///< corrects a tracker that has moved while the rig is up
-  bool undo = false;             ///< takes back what the last call has changed
-  bool apply = false;            ///< writes measured settings to a file beside the rig file
-  std::string photodiode;        ///< ALSA device with a photodiode in the light; empty: none
-  std::string text{};            ///< that --help or --version asks for; "" if the program shall run
+  std::filesystem::path points;   ///< folder of recorded points; nothing else is done
+  bool correct = false;           ///< corrects a tracker that has moved while the rig is up
+  bool undo = false;              ///< takes back what the last call has changed
+  bool apply = false;             ///< writes measured settings to a file beside the rig file
+  bool second_projector = false;  ///< measures that one in place of the first
+  std::string photodiode;         ///< ALSA device with a photodiode in the light; empty: none
+  std::string text{};  ///< that --help or --version asks for; "" if the program shall run
 };
 
 /// The folder of a session that was not named.
-std::filesystem::path default_folder(const std::filesystem::path& rig_file);
+std::filesystem::path default_folder(const Options& options);
+/// Whether a step measures what the call is about: of a second projector, only itself.
+bool concerns(const Options& options, Step step);
 
 /// Errors: bad_config.
 Result<Options> parse(int argc, char** argv);

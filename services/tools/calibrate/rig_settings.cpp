@@ -25,17 +25,11 @@ calib::CameraModel usual_lens(Size size) {
           (size.height_px - 1) / 2.0};
 }
 
-/// A calibration of which only the sizes are known: a lens as wide as most, and a projector image
-/// as large as the camera's.
+/// A calibration of which only the sizes are known.
 calib::Calibration from_sizes(Size camera, Size projector) {
   calib::Calibration rough;
   rough.camera = usual_lens(camera);
-  rough.projector.width_px = projector.width_px;
-  rough.projector.height_px = projector.height_px;
-  const double scale_x = static_cast<double>(projector.width_px) / camera.width_px,
-               scale_y = static_cast<double>(projector.height_px) / camera.height_px;
-  rough.projector.from_camera = {scale_x,           0, 0, 0, scale_y, 0, (scale_x - 1) / 2,
-                                 (scale_y - 1) / 2, 1};
+  rough.projector = rough_projector(camera, projector);
   return rough;
 }
 
@@ -200,6 +194,16 @@ OwnDevices own_devices(const config::Rig& rig) {
   if (camera_of(rig.camera) || camera_of(rig.camera2)) look_for(devices::Kind::camera);
   if (projector_of(rig.projector)) look_for(devices::Kind::display);
   return own_devices(rig, attached);
+}
+
+calib::ProjectorModel rough_projector(Size camera, Size projector) {
+  calib::ProjectorModel rough;
+  rough.width_px = projector.width_px;
+  rough.height_px = projector.height_px;
+  const double scale_x = static_cast<double>(projector.width_px) / camera.width_px,
+               scale_y = static_cast<double>(projector.height_px) / camera.height_px;
+  rough.from_camera = {scale_x, 0, 0, 0, scale_y, 0, (scale_x - 1) / 2, (scale_y - 1) / 2, 1};
+  return rough;
 }
 
 bool has_need_of(const config::Rig& rig, Step step) {

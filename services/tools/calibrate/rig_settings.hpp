@@ -49,6 +49,9 @@ struct RunningAs {
   bool is_second_guessed = false;  ///< the place of the second camera is not known
 };
 
+/// A projector of which only the sizes are known: its image is as large as the camera's.
+calib::ProjectorModel rough_projector(Size camera, Size projector);
+
 /// The rig with its own calibration. If it names none and has real devices, or if its calibration
 /// is that of other devices than `own`, with one that has only the sizes of the images
 /// (options.camera, options.projector) and is written to the session's folder. If only the second

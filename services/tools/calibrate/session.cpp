@@ -35,7 +35,8 @@ std::string sentence_of(const calib::Made& made, Step step) {
 /// The rig's own file; a new one next to the rig file if it has none.
 fs::path target_of(const Options& options, const config::Rig& rig) {
   if (!rig.calibration.empty()) return rig.calibration;
-  return fs::absolute(options.rig_file).replace_extension("").string() + "_calibration.toml";
+  return fs::absolute(options.rig_file).replace_extension("").string() +
+         (options.second_projector ? "_projector2" : "") + "_calibration.toml";
 }
 
 /// Gives a device of a draft the name of the one in use. Error bad_config: it has another name.
@@ -69,8 +70,9 @@ Result<void> adopt_devices(const calib::Calibration& used, calib::Calibration& d
 
 NamedFiles named_by(const Options& options) {
   NamedFiles command{options.rig_file.string(), calib::print_board_name(options.board), {}};
+  if (options.second_projector) command.option = "--second-projector";
   if (command.board == calib::print_board_name(calib::Board{})) command.board.clear();
-  if (options.folder != default_folder(options.rig_file)) command.folder = options.folder.string();
+  if (options.folder != default_folder(options)) command.folder = options.folder.string();
   return command;
 }
 
@@ -124,8 +126,9 @@ Result<Session> Session::open(const Options& options, const config::Rig& rig,
   session.rig_name_ = rig.name;
   session.command_ = named_by(options);
   session.draft_.made = {};
-  std::ranges::copy_if(kSteps, std::back_inserter(session.steps_),
-                       [&](Step step) { return has_need_of(rig, step); });
+  std::ranges::copy_if(kSteps, std::back_inserter(session.steps_), [&](Step step) {
+    return concerns(options, step) && has_need_of(rig, step);
+  });
   const auto file = session.file(kDraft);
   const bool has_draft = fs::exists(file, error);
   if (error)

@@ -129,7 +129,8 @@ std::vector<Step> steps_of(const Options& options, const config::Rig& rig, const
   std::vector<Step> steps = options.steps;
   if (!steps.empty()) return steps;
   for (const auto* entry : kMeasuringOrder)
-    if (has_need_of(rig, entry->step) && !session.is_done(entry->step))
+    if (concerns(options, entry->step) && has_need_of(rig, entry->step) &&
+        !session.is_done(entry->step))
       steps.push_back(entry->step);
   return steps;
 }

@@ -217,9 +217,9 @@ Result<void> correct_tracker(const Options& options, const config::Rig& rig,
   if (!*wanted) return {};
   corrected.made.tracker += fmt::format("; {}: corrected by {:.1f} mm and {:.2f} degrees",
                                         local_time("%Y-%m-%d"), drift->across_mm, drift->turn_deg);
-  const auto written =
-      write_and_keep(rig.calibration, calib::print_calibration(corrected),
-                     newest_number({rig.calibration, config::measured_file_of(options.rig_file)}));
+  const auto written = write_and_keep(rig.calibration, calib::print_calibration(corrected),
+                                      newest_number({rig.calibration, rig.projector2.calibration,
+                                                     config::measured_file_of(options.rig_file)}));
   if (!written) return tl::make_unexpected(written.error());
   fmt::print("the calibration is in {}\n`handcast reload` applies it; --undo takes it back\n",
              *written);

@@ -14,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 const config::MeasuredSetting kLatency{"projector.latency_ms", "10.2"};
 
@@ -28,7 +29,13 @@ class HandOver : public testing::Test {
   void write_rig(const std::string& text) const { std::ofstream(options_.rig_file) << text; }
   config::Rig rig() const { return *config::load_rig(options_.rig_file, {}); }
   calib::Calibration running() const { return *calib::load_calibration(rig().calibration); }
-  Session open() const { return *Session::open(options_, rig(), running()); }
+  /// The rig while the step is measured.
+  config::Rig as_it_runs() const {
+    auto rig = this->rig();
+    if (options_.second_projector) std::swap(rig.calibration, rig.projector2.calibration);
+    return rig;
+  }
+  Session open() const { return *Session::open(options_, as_it_runs(), running()); }
   /// Keeps a step with a lens of this focal length.
   void measure(Step step, double fx_px, std::vector<config::MeasuredSetting> settings = {}) const {
     auto session = open();
@@ -41,7 +48,7 @@ class HandOver : public testing::Test {
     options_.apply = apply;
     auto session = open();
     testing::internal::CaptureStdout();
-    const auto done = hand_over(options_, rig(), running(), session);
+    const auto done = hand_over(options_, as_it_runs(), running(), session);
     auto printed = testing::internal::GetCapturedStdout();
     EXPECT_TRUE(done) << done.error().what;
     return printed;
@@ -145,6 +152,38 @@ TEST_F(HandOver, AFirstCallIsTakenBackToThePersonsOwnValues) {
   EXPECT_EQ(config::print_rig(rig()), before);
   take_back();
   EXPECT_EQ(config::print_rig(rig()), after);
+}
+
+TEST_F(HandOver, WhatIsMeasuredOfASecondProjectorIsOfThatOne) {
+  options_.second_projector = true;
+  write_rig("name = \"mine\"\nprojector2.backend = \"twin\"\n");
+  measure(Step::screen, 1200, {kLatency});
+  const auto printed = call(true);
+  EXPECT_THAT(printed, HasSubstr("  projector2.latency_ms = 10.2\n"));
+  EXPECT_THAT(printed,
+              HasSubstr("  projector2.calibration = \"rig_projector2_calibration.toml\"\n"));
+  EXPECT_THAT(printed, Not(HasSubstr("truth")));
+  EXPECT_EQ(rig().projector2.latency_ms, 10.2);
+  EXPECT_EQ(rig().projector.latency_ms, config::Rig().projector.latency_ms);
+  const auto file = scratch_.path() / "rig_projector2_calibration.toml";
+  EXPECT_EQ(rig().projector2.calibration, file);
+  EXPECT_EQ(calib::load_calibration(file)->camera.fx_px, 1200);
+}
+
+TEST_F(HandOver, WhatWasMeasuredLastIsTakenBackOfWhicheverProjector) {
+  write_rig("name = \"mine\"\nprojector2.backend = \"twin\"\n");
+  for (const double fx_px : {1100., 1200., 1300., 1400., 1500.}) {
+    options_.second_projector = fx_px > 1300;
+    measure(Step::screen, fx_px);
+    call(true);
+  }
+  const auto second_px = [&] {
+    return calib::load_calibration(rig().projector2.calibration)->camera.fx_px;
+  };
+  ASSERT_EQ(second_px(), 1500);
+  take_back();
+  EXPECT_EQ(second_px(), 1400);
+  EXPECT_EQ(running().camera.fx_px, 1300);
 }
 
 TEST_F(HandOver, WithoutAnEarlierCallNothingIsTakenBack) {

@@ -46,6 +46,11 @@ TEST(CalibrateOptions, AnOptionWithoutEffectIsRefused) {
          "--points does not take --board"},
         {{"rig.toml", "--undo", "--folder", "f"}, "--undo does not take --folder"},
         {{"--print-board", "b.pdf", "--check"}, "different things; choose one"},
+        {{"rig.toml", "--check", "--second-projector"},
+         "--check does not take --second-projector; leave it out"},
+        {{"rig.toml", "screen", "lens", "--second-projector"},
+         "--second-projector measures screen and light; lens is measured without it"},
+        {{"rig.toml", "--second-projector", "--reflector", "8"}, "measures no tracker"},
         {{"rig.toml", "lens", "--reflector", "8"}, "--reflector belongs to the step `tracker`"},
         {{"rig.toml", "lens", "--photodiode", "hw:1"}, "--photodiode belongs to the step `light`"}})
     EXPECT_THAT(refusal(words), HasSubstr(sentence)) << words[1];
