@@ -20,11 +20,6 @@ std::string name_from(const fs::path& rig_file, const fs::path& file) {
   return config::quoted((is_beside ? file.filename() : file).string());
 }
 
-/// Where the truth of a twin is kept.
-fs::path truth_of(const Options& options) {
-  return fs::absolute(options.rig_file).replace_extension("").string() + "_truth.toml";
-}
-
 /// The twin whose truth is whatever calibration the rig names.
 bool is_true_by_name(const Options& options, const config::Rig& rig) {
   return !options.second_projector && rig.camera.backend == "twin" &&
@@ -97,6 +92,10 @@ Result<std::string> apply_settings(const fs::path& rig_file,
 }
 
 }  // namespace
+
+fs::path truth_of(const Options& options) {
+  return fs::absolute(options.rig_file).replace_extension("").string() + "_truth.toml";
+}
 
 Result<void> hand_over(const Options& options, const config::Rig& rig,
                        const calib::Calibration& running, Session& session) {

@@ -14,6 +14,9 @@ namespace handcast::calibrate {
 Result<void> hand_over(const Options& options, const config::Rig& rig,
                        const calib::Calibration& running, Session& session);
 
+/// Where hand_over() keeps the truth of a twin.
+std::filesystem::path truth_of(const Options& options);
+
 /// Takes back what the last call has changed: the calibration file, the measured settings, or both.
 /// A second call takes the first one back. Errors: bad_config (nothing is kept), unavailable.
 Result<void> undo(const Options& options, const config::Rig& rig);

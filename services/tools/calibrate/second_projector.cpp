@@ -7,6 +7,7 @@
 #include "config/settings/quoted.hpp"
 #include "config/settings/settings.hpp"
 #include "ipc/base/write_whole.hpp"
+#include "services/tools/calibrate/hand_over.hpp"
 #include "services/tools/calibrate/rig_settings.hpp"
 
 namespace handcast::calibrate {
@@ -60,12 +61,14 @@ Result<calib::Calibration> known_so_far(const config::Rig& rig, const Options& o
 }  // namespace
 
 Result<void> turn_to_projector(const config::Rig& rig, Options& options) {
+  const auto& second = rig.projector2;
+  auto& settings = options.settings;
   if (!options.second_projector) {
-    if (rig.projector2.calibration.empty())
-      options.settings.emplace_back("projector2.backend=none");
+    if (second.backend != "none" && second.calibration.empty())
+      settings.emplace_back("projector2.backend=none");
     return {};
   }
-  if (rig.projector2.backend == "none")
+  if (second.backend == "none")
     return fail(Errc::bad_config,
                 "--second-projector: the rig has no second projector; set projector2.backend");
   const auto known = known_so_far(rig, options);
@@ -74,12 +77,14 @@ Result<void> turn_to_projector(const config::Rig& rig, Options& options) {
   fs::create_directories(options.folder, failed);
   const auto file = fs::absolute(options.folder) / "known.toml";
   if (auto written = write_whole(file, calib::print_calibration(*known)); !written) return written;
-  auto& settings = options.settings;
-  for (const auto& changed : {differences(rig.projector2, rig.projector, "projector"),
-                              differences(rig.projector, rig.projector2, "projector2")})
+  for (const auto& changed : {differences(second, rig.projector, "projector"),
+                              differences(rig.projector, second, "projector2")})
     settings.insert(settings.end(), changed.begin(), changed.end());
   settings.push_back("calibration=" + config::quoted(file.string()));
   settings.push_back("projector2.calibration=" + config::quoted(rig.calibration));
+  // The truth of the first one.
+  if (rig.twin.geometry.calibration == truth_of(options))
+    settings.emplace_back("twin.geometry.calibration=");
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "calib/calibration.hpp"
+#include "services/tools/calibrate/hand_over.hpp"
 #include "tests/scratch.hpp"
 
 namespace handcast::calibrate {
@@ -73,6 +74,14 @@ TEST_F(SecondProjector, ItsCalibrationHasTheLensOfTheFirstOne) {
   EXPECT_EQ(known->projector_device, "right");
 }
 
+TEST_F(SecondProjector, TheTruthOfTheFirstOneIsNotThatOfTheSecond) {
+  std::ofstream(options_.rig_file, std::ios::app)
+      << "[twin]\ngeometry.calibration = \"rig_truth.toml\"\n";
+  ASSERT_EQ(rig().twin.geometry.calibration, truth_of(options_));
+  ASSERT_EQ(refusal(), "");
+  EXPECT_EQ(rig().twin.geometry.calibration, "");
+}
+
 TEST_F(SecondProjector, OneWithoutACalibrationNeedsItsSize) {
   write_rig("calibration = \"left.toml\"\nprojector2.backend = \"window\"\n");
   EXPECT_THAT(refusal(), HasSubstr("add --projector, e.g. --projector 1920x1080"));
@@ -86,7 +95,7 @@ TEST_F(SecondProjector, OneWithoutACalibrationNeedsItsSize) {
 TEST_F(SecondProjector, OneThatIsNotCalibratedIsLeftOutWhileTheFirstOneIsMeasured) {
   options_.second_projector = false;
   ASSERT_EQ(refusal(), "");
-  EXPECT_EQ(rig().projector2.backend, "window");
+  EXPECT_EQ(options_.settings.size(), 0U) << "--check of a rig that is up takes none";
   write_rig("projector2.backend = \"window\"\n");
   ASSERT_EQ(refusal(), "");
   EXPECT_EQ(rig().projector2.backend, "none");
