@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rig with two projectors, whose processes share the light of the twin's hand.
+#include <gmock/gmock.h>
 #include <signal.h>
 
 #include <cmath>
@@ -53,6 +54,7 @@ TEST_F(TwoProjectors, OneLightsTheHandAloneUntilTheOtherIsBack) {
     shared = light_of(*frames);
     return shared > 0 && std::abs(shared / before - 1) < 0.02;
   }));
+  EXPECT_THAT(handcast({"latency"}).output, testing::ContainsRegex("projector2 +[0-9]+ +60.0 Hz"));
   // Stopped, not killed: it stays away until the supervisor has noticed.
   const auto pid = service("projector2")["pid"].get<pid_t>();
   ::kill(pid, SIGSTOP);

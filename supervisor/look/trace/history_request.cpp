@@ -24,7 +24,9 @@ Result<std::map<std::string, double>> ask_for_rates(const std::string& rig) {
   if (!answer) return tl::make_unexpected(answer.error());
   std::map<std::string, double> rates;
   const auto figures = figures_in(answer->value("status", nlohmann::json()));
-  for (const auto& service : services_of({}, {})) {
+  config::Rig any;
+  any.camera2.backend = any.projector2.backend = "twin";
+  for (const auto& service : services_of(any, {})) {
     const auto stream = figures.streams.find(service.stream);
     if (stream != figures.streams.end() && stream->second.wanted_hz)
       rates[service.name] = *stream->second.wanted_hz;
