@@ -76,7 +76,9 @@ class CheckOfAPair : public CalibratePair {
     now.camera2->from_camera = moved * now.camera2->from_camera;
     write("truth.toml", calib::print_calibration(now));
   }
-  Outcome check() const { return calibrate_pair({"--check", "--yes", "--most-s", "40"}); }
+  Outcome check(const char* most_s = "40") const {
+    return calibrate_pair({"--check", "--yes", "--most-s", most_s});
+  }
 };
 
 TEST_F(CheckOfAPair, ASecondCameraThatWasBumpedIsFoundAndAnotherIsNotAccused) {
@@ -95,7 +97,7 @@ TEST_F(CheckOfAPair, ASecondCameraThatWasBumpedIsFoundAndAnotherIsNotAccused) {
 TEST_F(CheckOfAPair, OneThatLooksAwayIsFoundByWhatItShouldSee) {
   // 0.6 rad: it sees a part of what the first one sees, but not the board.
   move_second(glm::rotate(glm::dmat4(1), 0.6, {0, 1, 0}));
-  const auto away = check();
+  const auto away = check("15");
   EXPECT_EQ(away.exit_code, 1) << away.log;
   EXPECT_THAT(away.output, HasSubstr("pair: has moved"));
   EXPECT_THAT(away.log, HasSubstr("looks elsewhere, or is covered"));
