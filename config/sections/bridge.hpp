@@ -38,7 +38,7 @@ void describe(Visitor& visitor, Bridge& bridge) {
                 "sends, until it stops.");
   visitor.field("ros", bridge.ros,
                 "Send the joints also as ROS 2's geometry_msgs/PoseArray, in the topics "
-                "/handcast/left/joints and /handcast/right/joints.");
+                "/handcast/left/joints and /handcast/right/joints, and as frames of tf2.");
   visitor.field("domain", bridge.domain, between(0, 230),
                 "The domain of DDS, the same on all computers (ROS_DOMAIN_ID).");
   visitor.field("interface", bridge.interface,

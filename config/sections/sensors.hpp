@@ -261,7 +261,7 @@ void describe(Visitor& visitor, Landmarks& landmarks) {
       "What finds the 21 landmarks; `handcast-landmarks --backends` lists what this build "
       "has. handcast: handcast's own network, which also reads the tracker's joints and "
       "needs no file from outside. mediapipe: MediaPipe Hands lite. twin: the twin's "
-      "model of a detector. replay: a recording.");
+      "model of a detector. replay: a recording. external: a program of your own.");
   visitor.field("fallback", landmarks.fallback,
                 "The back end that takes the place of `backend` if a file of its networks is "
                 "missing; a line of the log says so. Empty: a missing file is an error.");

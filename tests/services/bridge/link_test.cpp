@@ -267,6 +267,23 @@ TEST_F(LinkTest, AWriterWithoutDeadlineIsNotReadAndNamed) {
   EXPECT_THAT(kept.complaints.front(), HasSubstr("pose.hands: another computer sends it"));
 }
 
+/// Whether a message came within ten seconds of sending; `look` gets the first one.
+template <class Message, class Send, class Look>
+bool came(dds_entity_t reader, const Send& send, const Look& look) {
+  for (const auto until = Deadline::in(10s); !until.passed();) {
+    send();
+    dds_sleepfor(DDS_MSECS(10));
+    void* sample = nullptr;
+    dds_sample_info_t info;
+    const auto count = dds_take(reader, &sample, &info, 1, 1);
+    if (count <= 0) continue;
+    if (info.valid_data) look(*static_cast<Message*>(sample));
+    dds_return_loan(reader, &sample, count);
+    if (info.valid_data) return true;
+  }
+  return false;
+}
+
 TEST_F(LinkTest, AComputerWithRos2SeesTheJoints) {
   const auto sender = open({.sends_ros = true}, "stage@left");
   Stranger ros(settings_);
@@ -274,25 +291,36 @@ TEST_F(LinkTest, AComputerWithRos2SeesTheJoints) {
   EXPECT_STREQ(geometry_msgs_msg_dds__PoseArray__desc.m_typename,
                "geometry_msgs::msg::dds_::PoseArray_");
   const auto poses = two_hands();
-  bool came = false;
-  for (const auto until = Deadline::in(10s); !came && !until.passed();) {
-    sender->send(poses);
-    dds_sleepfor(DDS_MSECS(10));
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    const auto count = dds_take(reader, &sample, &info, 1, 1);
-    if (count > 0 && info.valid_data) {
-      const auto& message = *static_cast<geometry_msgs_msg_dds__PoseArray_*>(sample);
-      came = true;
-      EXPECT_STREQ(message.header.frame_id, "handcast_tracker");
-      EXPECT_NEAR(message.header.stamp.sec, std::time(nullptr), 20);
-      ASSERT_EQ(message.poses._length, 26u);
-      EXPECT_FLOAT_EQ(static_cast<float>(message.poses._buffer[4].position.x), 0.04f);
-      EXPECT_FLOAT_EQ(static_cast<float>(message.poses._buffer[4].orientation.w), 0.8f);
-    }
-    if (count > 0) dds_return_loan(reader, &sample, count);
-  }
-  EXPECT_TRUE(came);
+  EXPECT_TRUE(came<geometry_msgs_msg_dds__PoseArray_>(
+      reader, [&] { sender->send(poses); },
+      [](const auto& message) {
+        EXPECT_STREQ(message.header.frame_id, "handcast_tracker");
+        EXPECT_NEAR(message.header.stamp.sec, std::time(nullptr), 20);
+        ASSERT_EQ(message.poses._length, 26u);
+        EXPECT_FLOAT_EQ(static_cast<float>(message.poses._buffer[4].position.x), 0.04f);
+        EXPECT_FLOAT_EQ(static_cast<float>(message.poses._buffer[4].orientation.w), 0.8f);
+      }));
+}
+
+TEST_F(LinkTest, AComputerWithRos2SeesAFrameForEachJoint) {
+  const auto sender = open({.sends_ros = true}, "stage@left");
+  Stranger ros(settings_);
+  const auto reader = ros.reader(tf2_msgs_msg_dds__TFMessage__desc, RosJoints::kFrames);
+  EXPECT_STREQ(tf2_msgs_msg_dds__TFMessage__desc.m_typename, "tf2_msgs::msg::dds_::TFMessage_");
+  const auto poses = two_hands();
+  EXPECT_TRUE(came<tf2_msgs_msg_dds__TFMessage_>(
+      reader, [&] { sender->send(poses); },
+      [&](const auto& message) {
+        ASSERT_EQ(message.transforms._length, 52u);
+        const auto& frame = message.transforms._buffer[26 + 4];
+        EXPECT_STREQ(frame.header.frame_id, "handcast_tracker");
+        EXPECT_NEAR(frame.header.stamp.sec, std::time(nullptr), 20);
+        EXPECT_EQ(frame.child_frame_id, RosJoints::frame_of(poses.hands[1].side, 4));
+        EXPECT_FLOAT_EQ(static_cast<float>(frame.transform.translation.x),
+                        poses.hands[1].joints[4].position_m[0]);
+        EXPECT_FLOAT_EQ(static_cast<float>(frame.transform.rotation.w), 0.8f);
+      }));
+  EXPECT_EQ(RosJoints::frame_of(msg::Side::left, 10), "handcast_left_index_finger_tip");
 }
 
 TEST_F(LinkTest, AnInterfaceThatIsNotThereIsASentence) {
