@@ -14,10 +14,11 @@ constexpr float kLeastRegion_px = 1;
 constexpr int kSearchEvery = 4, kSearchForMoreEvery = 60;  ///< images
 constexpr float kLeftScoreShare = 0.1f;                    ///< of a new image in the running mean
 constexpr float kSureOfSide = 0.25f;                       ///< distance of a left score from 0.5
+constexpr float kClearSide = 1.3f;                         ///< quotient of the sigmas of both sides
+constexpr float kStartOfSide = 1.5f;  ///< so many clear comparisons is the start of the mean worth
 constexpr float kLeastDirection = 0.15f;  ///< confidence of a hand in a region that was guessed
 constexpr int kCompareSidesEvery = 8;     ///< images, with a model that does not score sides
-// Without a tracker, by time: the back of a left hand looks like the palm of a right one for a
-// while.
+// Without a tracker, by time: for a while, a left hand's back looks like a right one's palm.
 constexpr std::int64_t kCompareSidesEvery_ns = 25'000'000, kSideMemory_ns = 1'500'000'000;
 
 msg::Side other(msg::Side side) {
@@ -138,33 +139,34 @@ Result<LandmarkEstimate> HandFinder::run_model(renderer::GreyView image, const R
 }
 
 /// The mean left score of a hand, with this image. A model that does not score sides is run on the
-/// mirrored hand, too, in some of the images: the smaller sigma decides.
+/// mirrored hand, too, in some of the images: the smaller sigma decides, by how clearly it does.
 Result<float> HandFinder::left_score_of(renderer::GreyView image, const HandCandidate& candidate,
                                         FoundHand& hand) {
   const float before = candidate.left_score < 0 ? hand.left_score : candidate.left_score;
   if (lifts_ && !candidate.is_followed) return before;
   if (!candidate.is_followed || candidate.hint_px || model_.landmarks->traits().scores_sides)
     return before + kLeftScoreShare * (hand.left_score - before);
-  const float share = share_of_comparison(hand);
-  if (share == 0) return before;
+  const float least = least_share_of_comparison(hand);
+  if (least == 0) return before;
   const auto mirrored = run_model(image, hand.region, other(hand.side), std::nullopt);
   if (!mirrored) return tl::make_unexpected(mirrored.error());
-  const bool is_right_side = sum_of(hand.sigma_px) <= sum_of(mirrored->sigma_px);
-  const float now = is_right_side == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
-  return before + share * (now - before);
+  const float own = sum_of(hand.sigma_px), others = sum_of(mirrored->sigma_px);
+  const float now = (own <= others) == (hand.side == msg::Side::left) ? 1.0f : 0.0f;
+  const float clarity = std::min(1.0f, std::abs(std::log(own / others)) / std::log(kClearSide));
+  hand.comparisons += clarity;
+  const float share = std::max(least, lifts_ ? 1 / (kStartOfSide + hand.comparisons) : 0);
+  return before + clarity * share * (now - before);
 }
 
-/// The weight of a comparison of sides in the mean; 0 if none is due. The first comparisons have
-/// equal weights, the start of the mean that of two.
-float HandFinder::share_of_comparison(FoundHand& hand) {
+/// The least weight of a clear comparison of sides in the mean; 0 if none is due.
+float HandFinder::least_share_of_comparison(const FoundHand& hand) {
   if (!lifts_) return ++since_side_ % kCompareSidesEvery == 0 ? kLeftScoreShare : 0.0f;
   std::int64_t& compared_ns = compared_ns_[index_of(hand.side)];
   const std::int64_t since_ns = image_ns_ - compared_ns;
   if (since_ns < kCompareSidesEvery_ns) return 0;
   compared_ns = image_ns_;
   const float by_time = static_cast<float>(since_ns) / static_cast<float>(kSideMemory_ns);
-  return std::max(1 / static_cast<float>(3 + hand.comparisons++),
-                  std::min(by_time, kLeftScoreShare));
+  return std::min(by_time, kLeftScoreShare);
 }
 
 /// Two candidates may have the same hand as their result, for example while hands cross. Keeps the
@@ -264,7 +266,6 @@ Result<std::optional<Region>> HandFinder::best_direction(renderer::GreyView imag
 /// hand off, the region of what was found decides.
 Result<void> HandFinder::examine_either_side(renderer::GreyView image, const Region& region) {
   constexpr int kMostRegions = 4;
-  constexpr float kClear = 1.3f;  // quotient of the sigmas
   const std::size_t before = found_.size();
   if (model_.landmarks->traits().scores_sides) {
     if (auto examined = examine(image, {msg::Side::left, region, std::nullopt}); !examined)
@@ -281,7 +282,7 @@ Result<void> HandFinder::examine_either_side(renderer::GreyView image, const Reg
     if (found_.size() < before + 2) return {};
     const float left = sigma_of(found_[before]), right = sigma_of(found_[before + 1]);
     found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(before + (left <= right ? 1 : 0)));
-    const bool is_clear = std::max(left, right) >= kClear * std::min(left, right);
+    const bool is_clear = std::max(left, right) >= kClearSide * std::min(left, right);
     if (is_clear || i == kMostRegions) return {};
     seen = model_.landmarks->region_around(found_.back().points_px);
   }

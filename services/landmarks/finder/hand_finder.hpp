@@ -72,7 +72,7 @@ struct HandCandidate {
   bool is_followed = false;       ///< the last image had the hand with kSteadyConfidence
   float left_score = -1;          ///< FoundHand::left_score in the last image; negative: not known
   std::optional<Points> before_px{};  ///< its points in the last image that had it
-  int comparisons = 0;                ///< FoundHand::comparisons
+  float comparisons = 0;              ///< FoundHand::comparisons
 };
 
 /// The place of a hand in an array by side.
@@ -108,7 +108,7 @@ class HandTracks {
     std::optional<Points> hint_px;  ///< the tracker's joints at that time
     float left_score;
     std::int64_t found_ns;
-    int comparisons;
+    float comparisons;
     bool steady;  ///< found in the last image with kSteadyConfidence
   };
 
@@ -180,7 +180,7 @@ class HandFinder {
                                      const std::optional<Points>& hint_px);
   Result<float> left_score_of(renderer::GreyView image, const HandCandidate& candidate,
                               FoundHand& hand);
-  float share_of_comparison(FoundHand& hand);
+  float least_share_of_comparison(const FoundHand& hand);
   bool search_is_due(const Hints& hints_px);
   Result<void> search(renderer::GreyView image);
   Result<std::vector<Region>> regions_to_search(renderer::GreyView image);
