@@ -2,7 +2,6 @@
 #include "supervisor/rig/service_table.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 #include "ipc/base/clock.hpp"
 
@@ -67,10 +66,10 @@ bool ServiceTable::need_not_be_waited_for(const Service& service, std::int64_t n
 
 Service* ServiceTable::next_to_stop() const {
   Service* guest = nullptr;
-  for (const auto& service : std::views::reverse(services_)) {
-    if (!service->is_running()) continue;
-    if (service->spec().instance_of != "guest") return service.get();
-    if (!guest) guest = service.get();
+  for (auto service = services_.rbegin(); service != services_.rend(); ++service) {
+    if (!(*service)->is_running()) continue;
+    if ((*service)->spec().instance_of != "guest") return service->get();
+    if (!guest) guest = service->get();
   }
   return guest;
 }

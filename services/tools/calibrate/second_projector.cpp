@@ -43,7 +43,7 @@ Result<calib::Calibration> known_so_far(const config::Rig& rig, const Options& o
   std::error_code unknown;
   if (const auto& named = rig.projector2.calibration; fs::exists(named, unknown)) {
     const auto second = calib::load_calibration(named);
-    if (!second) return second;
+    if (!second) return tl::make_unexpected(second.error());
     known->projector_device = second->projector_device;
     known->projector = second->projector;
     return known;

@@ -12,7 +12,6 @@
 namespace handcast::calibrate {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 /// A rig whose first projector is calibrated, with a newer lens than the calibration of its second
