@@ -68,9 +68,9 @@ Result<std::unique_ptr<RosJoints>> RosJoints::open(std::int32_t participant) {
     joints->poses_[index] = *writer;
     for (std::size_t i = 0; i < msg::kJoints; ++i) joints->names_[index][i] = frame_of(side, i);
   }
-  const auto writer = open_writer(participant, tf2_msgs_msg_dds__TFMessage__desc, kFrames, 10);
+  const auto writer = open_writer(participant, tf2_msgs_msg_dds__TFMessage__desc, kTransforms, 10);
   if (!writer) return tl::make_unexpected(writer.error());
-  joints->frames_ = *writer;
+  joints->transforms_ = *writer;
   return joints;
 }
 
@@ -99,7 +99,7 @@ void RosJoints::send(const msg::HandPoses& poses) {
   tf2_msgs_msg_dds__TFMessage_ message{};
   message.transforms._maximum = message.transforms._length = count;
   message.transforms._buffer = frames.data();
-  dds_write(frames_, &message);
+  dds_write(transforms_, &message);
 }
 
 }  // namespace handcast::bridge

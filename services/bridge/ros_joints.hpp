@@ -19,7 +19,7 @@ namespace handcast::bridge {
 class RosJoints {
  public:
   static constexpr const char* kTopics[] = {"rt/handcast/left/joints", "rt/handcast/right/joints"};
-  static constexpr const char* kFrames = "rt/tf";
+  static constexpr const char* kTransforms = "rt/tf";
   static constexpr const char* kFrame = "handcast_tracker";
   /// "handcast_left_index_finger_tip"
   static std::string frame_of(msg::Side side, std::size_t joint);
@@ -33,7 +33,7 @@ class RosJoints {
  private:
   /// A writer of DDS, by side.
   std::array<std::int32_t, 2> poses_{};
-  std::int32_t frames_ = 0;
+  std::int32_t transforms_ = 0;
   std::array<std::array<std::string, msg::kJoints>, 2> names_;
 };
 

@@ -40,7 +40,7 @@ void print_looks() {
                               std::pair("Transition", "transitions")};
   std::array<std::vector<std::string>, kKinds.size()> names;
   std::error_code absent;
-  for (const auto& file : std::filesystem::directory_iterator(share_folder() / "looks", absent)) {
+  for (const auto& file : std::filesystem::directory_iterator(assets_folder() / "looks", absent)) {
     if (file.path().extension() != ".fs") continue;
     const auto text = read_input(file.path(), 1 << 20).value_or("");
     for (std::size_t i = 0; i < kKinds.size(); ++i)

@@ -31,7 +31,7 @@ struct FoundHand {
   Confidences confidences{};                      ///< of the points, 0..1
   std::optional<Points> before_px;  ///< its points in the last image; empty if not known
   float left_score = 0.5f;          ///< 0..1: how likely it is a left hand; averaged over images
-  float comparisons = 0;            ///< how many clear ones of its sides are in left_score
+  float comparisons = 0;            ///< of its sides, in left_score; unclear ones count less
 };
 
 }  // namespace handcast::landmarks

@@ -15,7 +15,7 @@ constexpr int kSearchEvery = 4, kSearchForMoreEvery = 60;  ///< images
 constexpr float kLeftScoreShare = 0.1f;                    ///< of a new image in the running mean
 constexpr float kSureOfSide = 0.25f;                       ///< distance of a left score from 0.5
 constexpr float kClearSide = 1.3f;                         ///< quotient of the sigmas of both sides
-constexpr float kStartOfSide = 1.5f;  ///< so many clear comparisons is the start of the mean worth
+constexpr float kStartOfSide = 1.5f;      ///< the mean begins with so many: two clear ones turn it
 constexpr float kLeastDirection = 0.15f;  ///< confidence of a hand in a region that was guessed
 constexpr int kCompareSidesEvery = 8;     ///< images, with a model that does not score sides
 // Without a tracker, by time: for a while, a left hand's back looks like a right one's palm.

@@ -305,7 +305,7 @@ TEST_F(LinkTest, AComputerWithRos2SeesTheJoints) {
 TEST_F(LinkTest, AComputerWithRos2SeesAFrameForEachJoint) {
   const auto sender = open({.sends_ros = true}, "stage@left");
   Stranger ros(settings_);
-  const auto reader = ros.reader(tf2_msgs_msg_dds__TFMessage__desc, RosJoints::kFrames);
+  const auto reader = ros.reader(tf2_msgs_msg_dds__TFMessage__desc, RosJoints::kTransforms);
   EXPECT_STREQ(tf2_msgs_msg_dds__TFMessage__desc.m_typename, "tf2_msgs::msg::dds_::TFMessage_");
   const auto poses = two_hands();
   EXPECT_TRUE(came<tf2_msgs_msg_dds__TFMessage_>(
