@@ -93,13 +93,13 @@ std::optional<ClockReading> ClockMap::at(std::int64_t our_ns) const {
   if (corners_.empty()) return std::nullopt;
   const auto since = static_cast<double>(our_ns - newest_ns_);
   const auto offset = [&](const Line& line) { return line.offset + line.drift * since; };
-  const auto [least, most] = std::ranges::minmax(corners_, {}, offset);
-  const auto [slowest, fastest] = std::ranges::minmax(corners_, {}, &Line::drift);
-  const double low = offset(least), high = offset(most);
+  const auto [least, most] = std::ranges::minmax_element(corners_, {}, offset);
+  const auto [slowest, fastest] = std::ranges::minmax_element(corners_, {}, &Line::drift);
+  const double low = offset(*least), high = offset(*most);
   return ClockReading{reference_ns_ + std::llround((low + high) / 2),
                       std::max<std::int64_t>(std::llround((high - low) / 2), least_error_ns_) +
                           std::llround(kWander * std::abs(since)),
-                      (slowest.drift + fastest.drift) / 2 * 1e6};
+                      (slowest->drift + fastest->drift) / 2 * 1e6};
 }
 
 std::optional<std::int64_t> ClockMap::to_ours(std::int64_t their_ns) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/bridge/mirror.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace handcast::bridge {
@@ -19,7 +21,7 @@ std::vector<std::string> Mirror::follow(std::string_view values) {
   for (const auto& [setting, value] : now)
     if (const auto before = theirs_.find(setting);
         before == theirs_.end() || before->second != value)
-      changes.push_back(setting + "=" + value);
+      changes.push_back(fmt::format("{}={}", setting, value));
   for (const auto& [setting, value] : theirs_)
     if (!now.contains(setting)) changes.push_back(setting);
   theirs_ = std::move(now);
