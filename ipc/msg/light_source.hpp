@@ -16,11 +16,13 @@ enum class LightSource : std::uint8_t {
   kernel,    ///< the kernel, by the time stamp of the refresh
 };
 
-/// Number of sources.
-inline constexpr std::size_t kLightSources = 3;
 /// The names of the sources in reports, in the order of LightSource.
-inline constexpr std::array<std::string_view, kLightSources> kLightSourceNames{
-    "settings", "window system", "kernel"};
+inline constexpr std::array<std::string_view, 3> kLightSourceNames{"settings", "window system",
+                                                                   "kernel"};
+/// Its name in reports.
+inline constexpr std::string_view name_of(LightSource source) {
+  return kLightSourceNames[static_cast<std::size_t>(source)];
+}
 
 /// What is known of the light of a frame besides its time: StageMark::detail of Stage::light.
 struct LightNote {
@@ -37,7 +39,7 @@ inline constexpr std::uint32_t detail_of(const LightNote& note) {
 }
 /// The note in a number; empty if it is invalid.
 inline constexpr std::optional<LightNote> light_note_in(std::uint32_t detail) {
-  if ((detail & 0xff) >= kLightSources) return std::nullopt;
+  if ((detail & 0xff) >= kLightSourceNames.size()) return std::nullopt;
   return LightNote{static_cast<LightSource>(detail & 0xff), detail >> 8};
 }
 

@@ -59,11 +59,11 @@ struct LossCount {
   }
 };
 
-/// What the output made of the frames of the projector.
+/// What the output made of the frames of a projector.
 struct LightCount {
-  std::optional<msg::LightSource> source;  ///< who says when light comes; empty: none came
-  std::uint64_t missed = 0;                ///< refreshes of the output without a new frame
-  std::uint64_t doubled = 0;               ///< frames that were shown for more than one refresh
+  msg::LightSource source{};  ///< who says when light comes
+  std::uint64_t missed = 0;   ///< refreshes of the output without a new frame
+  std::uint64_t doubled = 0;  ///< frames that were shown for more than one refresh
 
   /// Adds the light of a frame.
   void add(const msg::LightNote& note) {
@@ -74,7 +74,7 @@ struct LightCount {
   }
 };
 
-/// The slowest frames of the projector in a run, and what made them slow.
+/// The slowest frames of a projector in a run, and what made them slow.
 class SlowFrames {
  public:
   static constexpr std::size_t kKept = 100;  ///< number of frames that are kept

@@ -17,12 +17,11 @@ double per_second(std::uint64_t count, std::int64_t span_ns) {
   return span_ns > 0 ? static_cast<double>(count) / ns_to_seconds(span_ns) : 0.0;
 }
 
-/// "draw", or "draw2" of the second instance of a program.
-std::string name_of(std::size_t stage, std::string_view service) {
-  return std::string(msg::kStageNames[stage]) + (service.ends_with('2') ? "2" : "");
-}
-
 }  // namespace
+
+std::string name_at_instance(std::string_view name, std::string_view service) {
+  return std::string(name) + (service.ends_with('2') ? "2" : "");
+}
 
 void FrameCount::add(const msg::Header& frame, std::uint64_t missed) {
   const auto time_ns = frame.published_ns;
@@ -77,9 +76,10 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
     const auto& mark = marks.marks[i];
     const auto stage = static_cast<std::size_t>(mark.stage);
     if (stage >= msg::kStageNames.size()) continue;  // values from shared memory may be invalid
-    stages_[name_of(stage, service)].add(mark.end_ns, mark.end_ns - mark.begin_ns);
+    stages_[name_at_instance(msg::kStageNames[stage], service)].add(mark.end_ns,
+                                                                    mark.end_ns - mark.begin_ns);
     if (const auto note = msg::light_note_in(mark.detail); note && mark.stage == msg::Stage::light)
-      light_.add(*note);
+      lights_[std::string(service)].add(*note);
     if (mark.stage == msg::Stage::capture) lost_images_.add(msg::losses_in(mark.detail));
     if (mark.stage == msg::Stage::sample) {
       const auto faults = msg::tracker_faults_in(mark.detail);
@@ -88,7 +88,8 @@ void Ledger::add(std::string_view service, const msg::StageMarks& marks, std::ui
     if (mark.stage == msg::Stage::detect)
       detectors_[std::string(service)] = msg::detector_note_in(mark.detail);
     if (mark.stage == msg::Stage::frame && frames.is_settled())
-      slow_frames_.add(mark.end_ns - mark.begin_ns, msg::frame_delay_in(mark.detail));
+      slow_frames_[std::string(service)].add(mark.end_ns - mark.begin_ns,
+                                             msg::frame_delay_in(mark.detail));
     if (mark.stage == msg::Stage::bridge) bridge_ = msg::bridge_note_in(mark.detail);
     if (mark.stage == msg::Stage::watch) tracker_drift_ = msg::drift_note_in(mark.detail);
     if (mark.stage != msg::Stage::correct) continue;

@@ -69,6 +69,9 @@ class StageTimes {
   std::array<Second, kWindow_s> seconds_;
 };
 
+/// "draw", or "draw2" if the service is the second instance of a program.
+std::string name_at_instance(std::string_view name, std::string_view service);
+
 /// The statistics of a run: the frames of each service, the times of each stage, the rungs. One
 /// thread.
 class Ledger {
@@ -79,14 +82,14 @@ class Ledger {
 
   /// The frames of a service; zeros if it is unknown.
   const FrameCount& frames(std::string_view service) const;
-  /// The times of each stage, by its name: "draw", and "draw2" of the second instance of a program.
+  /// The times of each stage, by its name_at_instance().
   const std::map<std::string, StageTimes, std::less<>>& stages() const { return stages_; }
   /// Number of drawn hands that got each rung of the ladder, by msg::Rung.
   const std::array<std::uint64_t, msg::kRungs>& rungs() const { return rungs_; }
-  /// The slowest frames of the projector, without the first second.
-  const SlowFrames& slow_frames() const { return slow_frames_; }
-  /// The light of the projector.
-  const LightCount& light() const { return light_; }
+  /// The slowest frames of each projector, by its service, without the first second.
+  const std::map<std::string, SlowFrames, std::less<>>& slow_frames() const { return slow_frames_; }
+  /// The light of each projector that has shown some, by its service.
+  const std::map<std::string, LightCount, std::less<>>& lights() const { return lights_; }
   /// The images that the camera lost.
   const LossCount& lost_images() const { return lost_images_; }
   /// What the tracker did wrong: how often each kind of fault began.
@@ -104,8 +107,8 @@ class Ledger {
   std::map<std::string, FrameCount, std::less<>> frames_;
   std::map<std::string, StageTimes, std::less<>> stages_;
   std::array<std::uint64_t, msg::kRungs> rungs_{};
-  SlowFrames slow_frames_;
-  LightCount light_;
+  std::map<std::string, SlowFrames, std::less<>> slow_frames_;
+  std::map<std::string, LightCount, std::less<>> lights_;
   LossCount lost_images_;
   std::array<std::uint64_t, msg::kTrackerFaults> tracker_faults_{};
   msg::DriftNote tracker_drift_;

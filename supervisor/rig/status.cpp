@@ -78,15 +78,13 @@ bool is_held_to_its_rate(const ServiceSpec& spec) {
   return spec.backend != "replay" && !spec.counts_sub_frames;
 }
 
-/// False if the service is not well or so new that its held rate, a mean of some seconds, is not
-/// yet its own.
+/// False if it is not well, or so new that its held rate, a mean of seconds, is not yet its own.
 bool is_settled(const Service& service, std::int64_t now_ns) {
   constexpr double kSettled_s = 10;
   return service.state() == State::ready && service.uptime_s(now_ns) >= kSettled_s;
 }
 
-// Services publish stage marks for each message, so the rates of the rings are counted from the
-// marks.
+// Each message has stage marks, from which the rates of the rings are counted.
 StreamFigures stream_figures_of(const Service& service, const RigView& rig) {
   const auto& frames = rig.recorder.ledger().frames(service.spec().name);
   return {.wanted_hz = wanted_hz(service.spec()),
@@ -97,20 +95,15 @@ StreamFigures stream_figures_of(const Service& service, const RigView& rig) {
           .newest_age_ms = rounded(frames.newest_age_ms(rig.now_ns))};
 }
 
-/// Empty if none came.
-std::optional<LightFigures> figures_of(const LightCount& light) {
-  if (!light.source) return std::nullopt;
-  return LightFigures{std::string(msg::kLightSourceNames[static_cast<std::size_t>(*light.source)]),
-                      light.missed, light.doubled};
+LightFigures figures_of(const LightCount& light) {
+  return {std::string(name_of(light.source)), light.missed, light.doubled};
 }
 
-/// Empty if there was no frame.
-std::optional<SlowFrameFigures> figures_of(const SlowFrames& slow) {
-  if (slow.count() == 0) return std::nullopt;
+SlowFrameFigures figures_of(const SlowFrames& slow) {
   const auto causes = slow.causes();
-  return SlowFrameFigures{slow.count(),     rounded(ns_to_us(slow.least_ns())),
-                          causes.preempted, causes.interrupted,
-                          causes.faulted,   causes.own};
+  return {slow.count(),     rounded(ns_to_us(slow.least_ns())),
+          causes.preempted, causes.interrupted,
+          causes.faulted,   causes.own};
 }
 
 /// Empty if nothing is known.
@@ -144,8 +137,10 @@ Figures figures_of(const RigView& rig) {
     figures.services[spec.name] = figures_of(*service, rig);
     if (!spec.stream.empty()) figures.streams[spec.stream] = stream_figures_of(*service, rig);
   }
-  figures.light = figures_of(ledger.light());
-  figures.slow_frames = figures_of(ledger.slow_frames());
+  for (const auto& [projector, light] : ledger.lights())
+    figures.lights[projector] = figures_of(light);
+  for (const auto& [projector, slow] : ledger.slow_frames())
+    figures.slow_frames[projector] = figures_of(slow);
   for (const auto& [reason, count] : ledger.lost_images().by_reason())
     figures.lost_images[std::string(reason)] = count;
   for (std::size_t k = 0; k < msg::kTrackerFaults; ++k)

@@ -193,8 +193,8 @@ int run(double seconds, int rounds, const Arguments& arguments) {
        {},
        {}}};
   const auto missed = [&] {
-    return rig.ask({.verb = control::Verb::status})["status"]["light"].value("missed_refreshes",
-                                                                             0.0);
+    return rig.ask({.verb = control::Verb::status})["status"]["light"]["projector"].value(
+        "missed_refreshes", 0.0);
   };
   const auto pid = rig.pid_of("desk");
   for (int round = 0; round < rounds; ++round)

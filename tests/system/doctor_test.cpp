@@ -27,7 +27,7 @@ TEST_F(Doctor, ARigThatIsUpIsWatched) {
   EXPECT_THAT(finding("camera rate")["sentence"].get<std::string>(), HasSubstr(" Hz of "));
   EXPECT_EQ(finding("hand")["grade"], "good");
   EXPECT_EQ(finding("background")["grade"], "good");
-  EXPECT_FALSE(finding("light").is_null());
+  EXPECT_FALSE(finding("light of projector").is_null());
   EXPECT_EQ(handcast({"down"}).exit_code, 0);
 }
 

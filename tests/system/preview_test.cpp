@@ -93,9 +93,29 @@ TEST_F(Preview, AShotShowsTheHandTheRegionsOnItAndTheLight) {
   EXPECT_EQ(kCamera.count(image, is_lit_hand), 0) << "a layer that was not chosen";
 }
 
+TEST_F(Preview, AShotShowsTheLightOfTheSecondProjector) {
+  Arguments two{"--set", "twin.motion=builtin:still"};
+  for (const char* setting : {"calibration=config/calibrations/left_of_two.toml",
+                              "projector2.calibration=config/calibrations/right_of_two.toml",
+                              "projector2.backend=twin", "projector2.rate_hz=60"})
+    two.insert(two.end(), {"--set", setting});
+  const auto rig = up(two);
+  wait_until_light();
+  ASSERT_TRUE(eventually([&] { return service("projector2")["state"] == "ready"; }));
+  const auto first = shot(), second = shot({"--second-projector"});
+  EXPECT_GT(kLight.count(second, is_coloured), 1000);
+  int others = 0;
+  for (int y = kLight.y0; y < kLight.y1; ++y)
+    for (int x = kLight.x0; x < kLight.x1; ++x) others += first.at(x, y) != second.at(x, y);
+  EXPECT_GT(others, 1000) << "another picture";
+}
+
 TEST_F(Preview, TheRigKnowsNothingOfAPreview) {
   const auto rig = up();
   wait_until_light();
+  const auto second = handcast({"preview", "--second-projector", "--shot", in_scratch("b.png")});
+  EXPECT_EQ(second.exit_code, 100);
+  EXPECT_THAT(second.log, HasSubstr("the rig has no second projector"));
   Command preview(scratch_.path(), {"preview", "--shot", in_scratch("a.png"), "--after", "4"});
   const auto top = handcast({"top", "--json"});
   EXPECT_TRUE(preview.running());

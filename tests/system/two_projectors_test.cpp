@@ -55,6 +55,8 @@ TEST_F(TwoProjectors, OneLightsTheHandAloneUntilTheOtherIsBack) {
     return shared > 0 && std::abs(shared / before - 1) < 0.02;
   }));
   EXPECT_THAT(handcast({"latency"}).output, testing::ContainsRegex("projector2 +[0-9]+ +60.0 Hz"));
+  EXPECT_THAT(handcast({"status"}).output, AllOf(testing::HasSubstr("light of projector: "),
+                                                 testing::HasSubstr("light of projector2: ")));
   // Stopped, not killed: it stays away until the supervisor has noticed.
   const auto pid = service("projector2")["pid"].get<pid_t>();
   ::kill(pid, SIGSTOP);

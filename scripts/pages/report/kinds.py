@@ -8,9 +8,9 @@ MOST_DEPTH = 32  # of nested JSON: printing it recurses
 NUMBERS = ("frames", "coverage", "spill", "iou", "seam_px", "jitter_px", "missing", "residual_px", "foldovers",
            "equivalent_latency_ms", "software_ms", "seconds", "seed")
 TEXTS = ("rig", "motion")
-FIGURES = ("interior_mm", "interior_px", "frame_us", "slow_frames")  # objects of numbers
-TABLES = ("stage_us", "rates")                                       # objects of figures
-GROUPS = ("bins", "services")                                        # objects of objects, whose members are not checked
+FIGURES = ("interior_mm", "interior_px", "frame_us")           # objects of numbers
+TABLES = ("stage_us", "rates", "slow_frames")                 # objects of figures
+GROUPS = ("bins", "services")                                 # objects of objects, whose members are not checked
 
 
 def is_number(value):

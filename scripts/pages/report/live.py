@@ -59,14 +59,15 @@ def too_slow(live):
 
 
 def slowest_of(live):
-    """A sentence about what made the slowest frames slow; "" if nothing is known."""
-    def count(key):
-        return live.number("slow_frames", key) or 0
-    if not count("count"):
-        return ""
-    return (f"Of the {count('count'):.0f} slowest frames of the projector ({count('least_us') / 1000:.2f} ms or more), "
-            f"{count('preempted'):.0f} were preempted by other threads, {count('interrupted'):.0f} by interrupts or a hypervisor, "
-            f"{count('page_faults'):.0f} had page faults, and {count('own'):.0f} were slow on the processor itself, by memory or its clock.")
+    """A sentence for each projector about what made its slowest frames slow; "" if nothing is known."""
+    def sentence(projector):
+        def count(key):
+            return live.number("slow_frames", projector, key) or 0
+        return (f"Of the {count('count'):.0f} slowest frames of {projector} ({count('least_us') / 1000:.2f} ms or more), "
+                f"{count('preempted'):.0f} were preempted by other threads, {count('interrupted'):.0f} by interrupts or a hypervisor, "
+                f"{count('page_faults'):.0f} had page faults, and {count('own'):.0f} were slow on the processor itself, by memory or its "
+                "clock.")
+    return " ".join(map(sentence, live.value("slow_frames") or ()))
 
 
 @dataclass

@@ -83,8 +83,11 @@ std::string write_figures(const json& status) {
   each("stage_us", [&](const std::string& stage, const json& figures) {
     writer.stage("time." + stage, member(figures, "p50"), member(figures, "p99"));
   });
-  const auto& missed = member(member(status, "light"), "missed_refreshes");
-  writer.count("error.missed_refreshes", sum_of({{"missed", missed}}));
+  auto missed = json::object();  // by projector
+  each("light", [&](const std::string& projector, const json& light) {
+    missed[projector] = member(light, "missed_refreshes");
+  });
+  writer.count("error.missed_refreshes", sum_of(missed));
   writer.count("error.lost_images", sum_of(member(status, "lost_images")));
   writer.count("error.tracker_faults", sum_of(member(status, "tracker_faults")));
   writer.number("error.drift_mm", member(member(status, "tracker_drift"), "across_mm"));

@@ -26,6 +26,7 @@ constexpr std::int64_t kPeriod_ns = 60'000'000;
 constexpr std::int64_t kWanted_ns = 2'000'000'000;
 constexpr int kQuality = 70, kMostWidth_px = 640, kMostLight_px = 400;
 constexpr std::array kSides{"left", "right"};
+constexpr std::array kLights{"light", "light2"};  // of both projectors
 
 /// libjpeg ends the process at a picture that cannot be one.
 bool is_picture(std::uint32_t width_px, std::uint32_t height_px) {
@@ -86,6 +87,11 @@ void add_place(json& places, glm::dvec2 px) {
   places.push_back(is_sane ? json(std::round(px.y * 10) / 10) : json());
 }
 
+json place_of(const msg::Projection& light) {
+  return {{"width", light.width_px}, {"height", light.height_px},  {"x", light.region_x_px},
+          {"y", light.region_y_px},  {"w", light.region_width_px}, {"h", light.region_height_px}};
+}
+
 json landmarks_of(const msg::Landmarks& message, const calib::CameraModel& camera) {
   auto hands = json::object();
   for (const auto side : {msg::Side::left, msg::Side::right}) {
@@ -105,7 +111,7 @@ json landmarks_of(const msg::Landmarks& message, const calib::CameraModel& camer
 struct PictureFeed::Inputs {
   std::optional<client::Stream<msg::CameraFrame>> camera;
   std::optional<client::Stream<msg::Landmarks>> landmarks;
-  std::optional<client::Stream<msg::Projection>> light;
+  std::array<std::optional<client::Stream<msg::Projection>>, kLights.size()> lights;
   std::int64_t next_try_ns = 0;
 
   void open(const std::string& rig) {
@@ -113,7 +119,8 @@ struct PictureFeed::Inputs {
     next_try_ns = now_ns() + 1'000'000'000;
     open_one(rig, "camera.frames", camera);
     open_one(rig, "landmarks.hands", landmarks);
-    open_one(rig, "projection.frames", light);
+    open_one(rig, "projection.frames", lights[0]);
+    open_one(rig, "projection2.frames", lights[1]);
   }
 
   template <class T>
@@ -199,16 +206,19 @@ void PictureFeed::work() {
 /// The next packet; empty if there is nothing new.
 std::string PictureFeed::picture(Inputs& inputs) {
   const auto frame = Inputs::newest(inputs.camera);
-  const auto light = Inputs::newest(inputs.light);
+  std::array<std::optional<ipc::Sample<msg::Projection>>, kLights.size()> lights;
+  std::ranges::transform(inputs.lights, lights.begin(),
+                         [](auto& stream) { return Inputs::newest(stream); });
   const auto found = Inputs::newest(inputs.landmarks);
-  if (!frame && !light) return {};
+  if (!frame && !lights[0] && !lights[1]) return {};
   Joints joints;
   {
     const std::lock_guard lock(mutex_);
     joints = joints_;
   }
   json text;
-  std::vector<std::uint8_t> camera_jpeg, light_jpeg;
+  std::vector<std::uint8_t> camera_jpeg;
+  std::array<std::vector<std::uint8_t>, kLights.size()> light_jpegs;
   if (frame && is_picture((*frame)->width_px, (*frame)->height_px)) {
     text["camera"] = {{"width", (*frame)->width_px},
                       {"height", (*frame)->height_px},
@@ -224,18 +234,18 @@ std::string PictureFeed::picture(Inputs& inputs) {
       add_place(hand, joint.z > 0.01 ? camera_.distort(camera_.project(joint)) : glm::dvec2(NAN));
   }
   if (found) text["landmarks"] = landmarks_of(**found, camera_);
-  if (light) {
-    text["light"] = {{"width", (*light)->width_px},    {"height", (*light)->height_px},
-                     {"x", (*light)->region_x_px},     {"y", (*light)->region_y_px},
-                     {"w", (*light)->region_width_px}, {"h", (*light)->region_height_px}};
-    if (is_picture((*light)->region_width_px, (*light)->region_height_px))
-      light_jpeg = jpeg_of_light(**light);
+  for (std::size_t i = 0; i < kLights.size(); ++i) {
+    if (!lights[i]) continue;
+    const msg::Projection& light = **lights[i];
+    text[kLights[i]] = place_of(light);
+    if (is_picture(light.region_width_px, light.region_height_px))
+      light_jpegs[i] = jpeg_of_light(light);
   }
   const auto header = json_text(text);
   std::string packet;
   append_part(packet, header.data(), header.size());
   append_part(packet, camera_jpeg.data(), camera_jpeg.size());
-  append_part(packet, light_jpeg.data(), light_jpeg.size());
+  for (const auto& jpeg : light_jpegs) append_part(packet, jpeg.data(), jpeg.size());
   return packet;
 }
 

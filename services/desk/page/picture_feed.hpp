@@ -13,11 +13,12 @@
 
 namespace handcast::desk {
 
-/// The pictures of the camera and of the projector for open pages, 16 times a second. A thread of
+/// The pictures of the camera and of the projectors for open pages, 16 times a second. A thread of
 /// its own, which neither reads nor compresses anything while nobody looks.
 ///
-/// A packet: the length of a JSON text (uint32, little-endian) and the text, and the same for two
-/// JPEG files, the camera's and the projector's, which are empty if there is none. The text:
+/// A packet: the length of a JSON text (uint32, little-endian) and the text, and the same for three
+/// JPEG files, those of the camera and of both projectors, which are empty if there is none. The
+/// text:
 ///
 ///     {"camera": {"width", "height", "id", "age_ms"},           size of the camera's image in px
 ///      "joints": {"left": [x, y, …]},                           of the tracker, in that image, px
@@ -25,6 +26,7 @@ namespace handcast::desk {
 ///      "light": {"width", "height", "x", "y", "w", "h"}}        size of the projector's picture
 ///      and
 ///                                                               the part of it that is sent, px
+///      "light2": likewise, of a second projector
 class PictureFeed {
  public:
   using Packet = std::shared_ptr<const std::string>;

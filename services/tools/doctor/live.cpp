@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "config/rig.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/control/control_client.hpp"
 #include "ipc/msg/camera_frame.hpp"
@@ -145,12 +146,12 @@ double number_in(const json& object, const char* name) {
 }
 
 /// A member that should be an object; an empty one if it is not.
-json object_in(const json& object, const char* name) {
+json object_in(const json& object, const std::string& name) {
   const auto found = object.find(name);
   return found != object.end() && found->is_object() ? *found : json::object();
 }
 
-json ring_in(const json& status, const char* ring) {
+json ring_in(const json& status, const std::string& ring) {
   return object_in(object_in(status, "rings"), ring);
 }
 
@@ -215,22 +216,34 @@ Finding tracker_of(const Seen& seen, double seconds) {
           "hold a hand in the tracker's view while the doctor looks"};
 }
 
-Finding light_of(const json& status) {
-  const auto light = status.value("light", json());
-  if (!light.is_object())
-    return {"light", Grade::fault, "none came", "`handcast status` says why the projector waits"};
+Finding light_of(const json& status, const std::string& projector, const json& ring) {
+  const auto check = "light of " + projector;
+  const auto light = object_in(object_in(status, "light"), projector);
+  if (light.empty())
+    return {check, Grade::fault, "none came",
+            fmt::format("`handcast status` says why {} waits", projector)};
   const double missed = number_in(light, "missed_refreshes");
-  const double shown = number_in(ring_in(status, "projection.frames"), "count");
   const auto sentence = fmt::format("{:.0f} refreshes without a new frame; times by the {}", missed,
                                     light.value("times_by", std::string("?")));
-  if (missed <= kMostMissed * shown) return {"light", Grade::good, sentence, ""};
-  return {"light", Grade::fault, sentence,
-          "lower projector.rate_hz, or give the projector service a core ([projector.process])"};
+  if (missed <= kMostMissed * number_in(ring, "count")) return {check, Grade::good, sentence, ""};
+  return {check, Grade::fault, sentence,
+          fmt::format("lower {0}.rate_hz, or give it a core ([{0}.process])", projector)};
+}
+
+/// The rate and the light of each projector of the rig.
+void judge_projectors(const json& status, std::vector<Finding>& findings) {
+  for (const auto at : {config::Viewpoint::first, config::Viewpoint::second}) {
+    const auto projector = config::name_at_projector(at, "projector");
+    const auto ring = ring_in(status, config::name_at_projector(at, "projection.frames"));
+    if (ring.empty() && at == config::Viewpoint::second) continue;
+    findings.push_back(judge_rate(ring, projector + " rate", projector + ".rate_hz"));
+    findings.push_back(light_of(status, projector, ring));
+  }
 }
 
 }  // namespace
 
-Finding judge_rate(const json& ring, const char* check, const char* setting) {
+Finding judge_rate(const json& ring, const std::string& check, const std::string& setting) {
   const double wanted_hz = number_in(ring, "wanted_hz"), held_hz = number_in(ring, "held_hz");
   const auto sentence = fmt::format("{:.1f} Hz of {:.1f} Hz", held_hz, wanted_hz);
   const bool is_enough = held_hz >= kHeld * wanted_hz || !ring.value("is_held_to_it", true);
@@ -247,8 +260,6 @@ Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds
   const auto& status = answer->contains("status") ? (*answer)["status"] : *answer;
   auto findings = services_in(status);
   findings.push_back(judge_rate(ring_in(status, "camera.frames"), "camera rate", "camera.rate_hz"));
-  findings.push_back(
-      judge_rate(ring_in(status, "projection.frames"), "projector rate", "projector.rate_hz"));
   findings.push_back(clock_of(*seen));
   findings.push_back(losses_in(status, *seen));
   findings.push_back(hands_in(*seen));
@@ -257,7 +268,7 @@ Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds
     auto images = judge_images(seen->greys, seen->with_hand > 0);
     findings.insert(findings.end(), images.begin(), images.end());
   }
-  findings.push_back(light_of(status));
+  judge_projectors(status, findings);
   return findings;
 }
 

@@ -32,7 +32,8 @@ class Greys {
 std::vector<Finding> judge_images(const Greys& greys, bool has_hand);
 
 /// Whether a ring of the supervisor's status holds its rate. `setting`: the path of the rate.
-Finding judge_rate(const nlohmann::json& ring, const char* check, const char* setting);
+Finding judge_rate(const nlohmann::json& ring, const std::string& check,
+                   const std::string& setting);
 
 /// Watches a rig that is up for some seconds: services, rates, clocks, losses, images, hands,
 /// light. Errors: those of client::open_stream() for its camera, and unavailable (its status cannot

@@ -29,7 +29,7 @@ namespace {
 /// unavailable (the file cannot be written).
 Result<void> shoot(const Options& options) {
   if (auto possible = check_writable(options.shot); !possible) return possible;
-  auto feed = RigFeed::open(options.rig);
+  auto feed = RigFeed::open(options.rig, options.projector);
   if (!feed) return tl::make_unexpected(std::move(feed.error()));
   const auto end_ns = now_ns() + seconds_to_ns(options.after_s);
   for (auto next_ns = now_ns(); next_ns < end_ns; next_ns += RigFeed::kPeriod_ns) {
@@ -126,7 +126,7 @@ class Show {
 /// Call it on the main thread. Errors: those of RigFeed::open(), unavailable (no display, or no
 /// OpenGL).
 Result<void> show_live(const Options& options) {
-  auto feed = RigFeed::open(options.rig);
+  auto feed = RigFeed::open(options.rig, options.projector);
   if (!feed) return tl::make_unexpected(std::move(feed.error()));
   auto window = open_window(feed->rig(), options.look);
   if (!window) return tl::make_unexpected(std::move(window.error()));

@@ -34,9 +34,11 @@ Result<Parsed> parse(int argc, char** argv) {
   Parsed parsed;
   auto& options = parsed.options;
   std::string size, layers;
+  bool is_second = false;
   CommandLine line("handcast preview",
                    "Shows what a running rig sees and does, in a window or as a picture.");
   line.add("--rig NAME", options.rig, "Which rig, if several are up");
+  line.add("--second-projector", is_second, "Shows the light of the second projector");
   line.add("--shot FILE.png", options.shot, "Writes a PNG file instead; needs no display");
   line.add("--after N", options.after_s, "Seconds for which the rig is watched before the picture",
            {0.1, kLongest_s});
@@ -47,6 +49,7 @@ Result<Parsed> parse(int argc, char** argv) {
   auto text = line.parse(argc, argv);
   if (!text) return tl::make_unexpected(text.error());
   parsed.text = std::move(*text);
+  if (is_second) options.projector = config::Viewpoint::second;
   if (!size.empty())
     if (auto set = set_size(size, options.look); !set) return tl::make_unexpected(set.error());
   if (layers.empty()) return parsed;

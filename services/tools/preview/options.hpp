@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "config/sections/viewpoint.hpp"
 #include "services/tools/preview/layout/layout.hpp"
 
 namespace handcast::preview {
@@ -13,6 +14,7 @@ struct Options {
   std::filesystem::path shot;  ///< --shot; empty: a window
   double after_s = 2;          ///< --after: how long the rig is watched before the picture
   Look look;                   ///< --size and --layers
+  config::Viewpoint projector = config::Viewpoint::first;  ///< --second-projector
 };
 
 /// Result of parse(): what to do, or what to print.

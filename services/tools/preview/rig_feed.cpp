@@ -18,27 +18,30 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::array kStreams{"camera.frames", "pose.hands", "landmarks.hands",
-                              "projection.frames"};
+constexpr std::array kStreams{"camera.frames", "pose.hands", "landmarks.hands"};
 constexpr std::array kAgesOf{"image", "tracker", "landmarks"};
 constexpr std::int64_t kLate_ns = 100'000'000;  ///< later, the poses of the last look are gone
 constexpr auto kPatience = 100ms;               ///< with a supervisor that hangs
 constexpr std::size_t kMostAtOnce = 64;         ///< messages of one stream at one look
 
+std::string light_of(config::Viewpoint projector) {
+  return config::name_at_projector(projector, "projection.frames");
+}
+
 /// `applied`: the settings of the rig, TOML.
-Result<World> world_of(const std::string& applied) {
+Result<World> world_of(const std::string& applied, config::Viewpoint projector) {
   const auto config = config::parse_rig(applied, "applied rig");
   if (!config) return tl::make_unexpected(config.error());
-  return load_world(*config);
+  return load_world(*config, projector);
 }
 
 }  // namespace
 
 void RigFeed::learn_world() {
   auto applied = control::ask_for_rig(rig_);
-  auto world = applied.and_then(world_of);
+  auto world = applied.and_then([&](const auto& text) { return world_of(text, projector_); });
   if (applied) applied_ = std::move(*applied);
-  no_world_ = world ? "" : "only images are shown: " + world.error().what;
+  no_world_ = world ? "" : world.error().what;
   maker_ = std::make_unique<SceneMaker>(world ? std::optional(std::move(*world)) : std::nullopt);
 }
 
@@ -61,13 +64,14 @@ Result<void> RigFeed::open_input(std::string_view name, Input<T>& input) {
   return {};
 }
 
-Result<RigFeed> RigFeed::open(const std::string& rig) {
+Result<RigFeed> RigFeed::open(const std::string& rig, config::Viewpoint projector) {
   const auto chosen = control::choose_rig(rig);
   if (!chosen) return tl::make_unexpected(chosen.error());
-  RigFeed feed(*chosen);
-  const std::array opened{
-      feed.open_input(kStreams[0], feed.camera_), feed.open_input(kStreams[1], feed.poses_),
-      feed.open_input(kStreams[2], feed.landmarks_), feed.open_input(kStreams[3], feed.light_)};
+  RigFeed feed(*chosen, projector);
+  const std::array opened{feed.open_input(kStreams[0], feed.camera_),
+                          feed.open_input(kStreams[1], feed.poses_),
+                          feed.open_input(kStreams[2], feed.landmarks_),
+                          feed.open_input(light_of(projector), feed.light_)};
   std::size_t absent = 0;
   for (const auto& each : opened) {
     if (each) continue;
@@ -77,6 +81,8 @@ Result<RigFeed> RigFeed::open(const std::string& rig) {
   }
   if (absent == opened.size()) return tl::make_unexpected(opened.front().error());
   feed.learn_world();
+  if (projector == config::Viewpoint::second && !feed.no_world_.empty())
+    return fail(Errc::bad_config, feed.no_world_);
   feed.next_rate_ns_ = now_ns();
   return feed;
 }
@@ -187,7 +193,8 @@ Scene RigFeed::scene() {
   auto& projection = shown_.projection ? shown_.projection : newest_.projection;
   auto& frame = shown_.frame ? shown_.frame : newest_.frame;
   auto scene = maker_->make(frame ? &**frame : nullptr, projection ? &**projection : nullptr);
-  if (!no_world_.empty()) scene.missing.insert(scene.missing.begin(), no_world_);
+  if (!no_world_.empty())
+    scene.missing.insert(scene.missing.begin(), "only images are shown: " + no_world_);
   scene.missing.insert(scene.missing.begin(), missing_.begin(), missing_.end());
   return scene;
 }
@@ -196,13 +203,13 @@ Gauges RigFeed::gauges() const {
   Gauges gauges{
       .rig = rig_, .rates_period_s = ns_to_seconds(kRate_ns), .ages_period_s = age_period_s()};
   if (!silent_.empty()) gauges.ill.push_back(silent_);
-  read_status(status_, gauges);
-  const auto add = [&](const char* name, const auto& input) {
+  read_status(status_, projector_, gauges);
+  const auto add = [&](const std::string& name, const auto& input) {
     if (input.stream)
       gauges.rates.push_back({name, wanted_hz(status_, name), input.held_hz.values()});
   };
   add(kStreams[0], camera_), add(kStreams[1], poses_), add(kStreams[2], landmarks_);
-  add(kStreams[3], light_);
+  add(light_of(projector_), light_);
   for (std::size_t i = 0; i < ages_ms_.size(); ++i)
     gauges.ages.push_back({kAgesOf[i], ages_ms_[i].values()});
   return gauges;

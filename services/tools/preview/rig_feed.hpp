@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/sections/viewpoint.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/camera_frame.hpp"
 #include "ipc/msg/hand_poses.hpp"
@@ -26,9 +27,11 @@ class RigFeed {
   /// Time between two calls of look().
   static constexpr std::int64_t kPeriod_ns = 33'000'000;
 
-  /// Opens the rings of a rig; an empty name means the only one that is up. Errors: unavailable (no
-  /// such rig), bad_config (it has none of the four streams), bad_data (another version).
-  static Result<RigFeed> open(const std::string& rig);
+  /// Opens the rings of a rig, and the light of one of its projectors; an empty name means the only
+  /// one that is up. Errors: unavailable (no such rig), bad_config (it has none of the four
+  /// streams, or no second projector), bad_data (another version).
+  static Result<RigFeed> open(const std::string& rig,
+                              config::Viewpoint projector = config::Viewpoint::first);
 
   /// Takes the newest light and the image it was made from, and all new poses and landmarks. Does
   /// not wait for messages; waits at most 0.1 s for a supervisor that hangs. Errors: disconnected
@@ -39,8 +42,11 @@ class RigFeed {
   Scene scene();
   /// The figures up to now.
   Gauges gauges() const;
-  /// Name of the rig.
+  /// Name of the rig, and whose light is shown.
+  /// @{
   const std::string& rig() const { return rig_; }
+  config::Viewpoint projector() const { return projector_; }
+  /// @}
 
  private:
   /// One stream; absent if the rig does not have it.
@@ -58,7 +64,8 @@ class RigFeed {
   static constexpr std::size_t kRates = 120, kAges = 300;
   static constexpr std::int64_t kRate_ns = 500'000'000, kChange_ns = 2'000'000'000;
 
-  explicit RigFeed(std::string rig) : rig_(std::move(rig)) {}
+  RigFeed(std::string rig, config::Viewpoint projector)
+      : rig_(std::move(rig)), projector_(projector) {}
   void learn_world();
   void learn_changes();
   template <class T>
@@ -72,6 +79,7 @@ class RigFeed {
   void ask_status();
 
   std::string rig_;
+  config::Viewpoint projector_;
   std::vector<std::string> missing_;  ///< sentences about what is not shown
   std::string applied_;               ///< the settings that the world was made from, TOML
   std::string no_world_;              ///< why the rig's settings are not known; empty if they are

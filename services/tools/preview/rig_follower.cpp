@@ -17,7 +17,7 @@ void RigFollower::look() {
   }
   if (now_ns() < next_try_ns_) return;
   next_try_ns_ = now_ns() + kRetry_ns;
-  auto feed = RigFeed::open(rig_);
+  auto feed = RigFeed::open(rig_, projector_);
   if (feed)
     feed_.emplace(std::move(*feed));
   else if (feed.error().code != Errc::unavailable)

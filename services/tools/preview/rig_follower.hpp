@@ -12,7 +12,8 @@ namespace handcast::preview {
 class RigFollower {
  public:
   /// Follows the rig that `feed` reads.
-  explicit RigFollower(RigFeed feed) : rig_(feed.rig()), feed_(std::move(feed)) {}
+  explicit RigFollower(RigFeed feed)
+      : rig_(feed.rig()), projector_(feed.projector()), feed_(std::move(feed)) {}
 
   /// As RigFeed::look(). If the rig is down, looks for it now and then instead.
   void look();
@@ -25,6 +26,7 @@ class RigFollower {
   static constexpr std::int64_t kRetry_ns = 500'000'000;
 
   std::string rig_;
+  config::Viewpoint projector_;
   std::optional<RigFeed> feed_;  ///< empty: the rig is down
   std::string why_down_;         ///< a sentence for the person
   std::int64_t next_try_ns_ = 0;

@@ -62,7 +62,7 @@ std::optional<double> wanted_hz(const json& status, std::string_view stream) {
   return hz && *hz > 0 ? hz : std::nullopt;
 }
 
-void read_status(const json& status, Gauges& gauges) {
+void read_status(const json& status, config::Viewpoint projector, Gauges& gauges) {
   gauges.uptime_s = number(at(status, {"uptime_s"})).value_or(0);
   if (const auto& services = at(status, {"services"}); services.is_object())
     for (const auto& [name, service] : services.items()) {
@@ -73,10 +73,13 @@ void read_status(const json& status, Gauges& gauges) {
           fmt::format("{} is {}{}{}", name, state, reason.empty() ? "" : ": ", reason));
     }
   gauges.stages.clear();
-  for (const auto stage : msg::kStageNames) {
-    const auto p50 = number(at(status, {"stage_us", stage, "p50"})),
-               p99 = number(at(status, {"stage_us", stage, "p99"}));
-    if (p50 && p99) gauges.stages.push_back({std::string(stage), *p50, *p99});
+  constexpr auto kFirstOfFrame = static_cast<std::size_t>(msg::Stage::predict);
+  for (std::size_t i = 0; i < msg::kStageNames.size(); ++i) {
+    const std::string stage(msg::kStageNames[i]);
+    const bool is_of_second = projector == config::Viewpoint::second && i >= kFirstOfFrame;
+    const auto& times = at(status, {"stage_us", is_of_second ? stage + "2" : stage});
+    const auto p50 = number(at(times, {"p50"})), p99 = number(at(times, {"p99"}));
+    if (p50 && p99) gauges.stages.push_back({stage, *p50, *p99});
   }
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/sections/viewpoint.hpp"
 #include "services/tools/preview/layout/gauges.hpp"
 
 namespace handcast::preview {
@@ -40,9 +41,9 @@ class RateMeter {
   std::int64_t first_ns_ = 0, last_ns_ = 0;
 };
 
-/// Sets uptime, troubles and stages from the output of `handcast status --json`. What has another
-/// form than expected is left out.
-void read_status(const nlohmann::json& status, Gauges& gauges);
+/// Sets uptime, troubles and stages, those of a frame of `projector`, from the output of `handcast
+/// status --json`. What has another form than expected is left out.
+void read_status(const nlohmann::json& status, config::Viewpoint projector, Gauges& gauges);
 /// The configured rate of a stream; empty if there is none.
 std::optional<double> wanted_hz(const nlohmann::json& status, std::string_view stream);
 

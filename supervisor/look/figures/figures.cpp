@@ -76,7 +76,7 @@ void describe(Visitor& visit, Figures& figures) {
   visit("keeper_died", figures.keeper_died);
   visit("services", figures.services);
   visit("rings", figures.streams);
-  visit("light", figures.light);
+  visit("light", figures.lights);
   visit("slow_frames", figures.slow_frames);
   visit("lost_images", figures.lost_images);
   visit("tracker_faults", figures.tracker_faults);

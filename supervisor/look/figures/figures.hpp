@@ -45,14 +45,14 @@ struct StreamFigures {
   bool slow() const;
 };
 
-/// The light of the output.
+/// The light of a projector.
 struct LightFigures {
   std::string times_by;                ///< what says when light comes, one of kLightSourceNames
   std::uint64_t missed_refreshes = 0;  ///< refreshes without a new frame
   std::uint64_t doubled_frames = 0;    ///< frames shown for several refreshes
 };
 
-/// The slowest frames of the projector, by what made them slow (SlowFrames::Causes).
+/// The slowest frames of a projector, by what made them slow (SlowFrames::Causes).
 struct SlowFrameFigures {
   std::uint64_t count = 0;  ///< at most 100
   double least_us = 0;      ///< the time of the fastest of them
@@ -89,8 +89,8 @@ struct Figures {
   bool keeper_died = false;  ///< a dead supervisor would not be replaced
   std::map<std::string, ServiceFigures> services;
   std::map<std::string, StreamFigures> streams;
-  std::optional<LightFigures> light;                    ///< empty: none came
-  std::optional<SlowFrameFigures> slow_frames;          ///< empty: there was no frame
+  std::map<std::string, LightFigures> lights;           ///< by projector; none of one without light
+  std::map<std::string, SlowFrameFigures> slow_frames;  ///< by projector
   std::map<std::string, std::uint64_t> lost_images;     ///< of the camera, by reason
   std::map<std::string, std::uint64_t> tracker_faults;  ///< how often each began, by kind
   std::optional<DriftFigures> tracker_drift;            ///< empty: nothing is known

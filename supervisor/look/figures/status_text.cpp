@@ -15,17 +15,15 @@ std::string text_of(const std::optional<double>& value, std::string_view unit) {
   return value ? fmt::format("{:.6g}{}", *value, unit) : "-";
 }
 
-/// "light: 59.9 Hz of 60 Hz; 3 refreshes without a new frame, ...". "" if none came.
-std::string print_light(const Figures& figures) {
-  if (!figures.light) return "";
-  const auto found = figures.streams.find("projection.frames");
-  const bool is_known = found != figures.streams.end();
-  return fmt::format(
-      "\nlight: {} of {}; {} refreshes without a new frame, {} frames shown for several refreshes; "
-      "times by the {}\n",
-      is_known ? text_of(found->second.held_hz, " Hz") : "-",
-      is_known ? text_of(found->second.wanted_hz, " Hz") : "-", figures.light->missed_refreshes,
-      figures.light->doubled_frames, figures.light->times_by);
+/// "light of projector: 3 refreshes without a new frame, ...", a line for each.
+std::string print_lights(const Figures& figures) {
+  std::string text;
+  for (const auto& [projector, light] : figures.lights)
+    text += fmt::format(
+        "\nlight of {}: {} refreshes without a new frame, {} frames shown for several refreshes; "
+        "times by the {}\n",
+        projector, light.missed_refreshes, light.doubled_frames, light.times_by);
+  return text;
 }
 
 /// "camera: 3 images never arrived, ...". "" if none was lost.
@@ -77,14 +75,16 @@ std::string text_of_us(double us) {
   return us < kMs ? fmt::format("{:.6g} us", us) : fmt::format("{:.2f} ms", us / kMs);
 }
 
-/// What made the slowest frames slow. "" if there was no frame.
-std::string print_slow_frames(const std::optional<SlowFrameFigures>& slow) {
-  if (!slow) return "";
-  return fmt::format(
-      "\nslowest {} frames, {} or more: {} preempted by other threads, {} interrupted, {} with "
-      "page faults, {} slow by themselves\n",
-      slow->count, text_of_us(slow->least_us), slow->preempted, slow->interrupted,
-      slow->page_faults, slow->own);
+/// What made the slowest frames of each projector slow.
+std::string print_slow_frames(const Figures& figures) {
+  std::string text;
+  for (const auto& [projector, slow] : figures.slow_frames)
+    text += fmt::format(
+        "\nslowest {} frames of {}, {} or more: {} preempted by other threads, {} interrupted, {} "
+        "with page faults, {} slow by themselves\n",
+        slow.count, projector, text_of_us(slow.least_us), slow.preempted, slow.interrupted,
+        slow.page_faults, slow.own);
+  return text;
 }
 
 /// Names the rings that hold much less than their rate, and what to do. "" if none does.
@@ -153,9 +153,9 @@ std::string print_status(const Figures& figures) {
         "the keeper has died, so a dead supervisor would not be replaced; `handcast up` with the "
         "same arguments starts another keeper\n\n";
   return text + print_services(figures) + print_rings(figures) + print_slow(figures) +
-         print_light(figures) + print_slow_frames(figures.slow_frames) +
-         print_losses(figures.lost_images) + print_faults(figures.tracker_faults) +
-         print_drift(figures.tracker_drift) + print_bridge(figures.bridge) + print_stages(figures);
+         print_lights(figures) + print_slow_frames(figures) + print_losses(figures.lost_images) +
+         print_faults(figures.tracker_faults) + print_drift(figures.tracker_drift) +
+         print_bridge(figures.bridge) + print_stages(figures);
 }
 
 }  // namespace handcast::supervisor

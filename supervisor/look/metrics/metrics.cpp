@@ -222,6 +222,14 @@ std::vector<MetricFamily> families_by_key(const Figures& figures) {
   };
 }
 
+MetricFamily wanted_rates_of(const Figures& figures) {
+  auto wanted = Family::gauge("handcast_ring_wanted_hertz",
+                              "Messages per second that the rig file asks for.");
+  for (const auto& [ring, stream] : figures.streams)
+    if (stream.wanted_hz) wanted.add({{"ring", ring}}, *stream.wanted_hz);
+  return wanted.family;
+}
+
 std::vector<MetricFamily> families_of_light(const Figures& figures) {
   auto source = Family::gauge("handcast_light_times_info",
                               "What says when light comes (label by); always 1.");
@@ -229,17 +237,12 @@ std::vector<MetricFamily> families_of_light(const Figures& figures) {
                                 "Refreshes of the output without a new frame.");
   auto doubled = Family::counter("handcast_light_doubled_frames_total",
                                  "Frames that the output showed for several refreshes.");
-  auto wanted = Family::gauge("handcast_light_wanted_hertz",
-                              "Frames per second that the projector is asked for.");
-  const auto stream = figures.streams.find("projection.frames");
-  if (stream != figures.streams.end() && stream->second.wanted_hz)
-    wanted.add({}, *stream->second.wanted_hz);
-  if (figures.light) {
-    source.add({{"by", figures.light->times_by}}, 1);
-    missed.add({}, figures.light->missed_refreshes);
-    doubled.add({}, figures.light->doubled_frames);
+  for (const auto& [projector, light] : figures.lights) {
+    source.add({{"service", projector}, {"by", light.times_by}}, 1);
+    missed.add({{"service", projector}}, light.missed_refreshes);
+    doubled.add({{"service", projector}}, light.doubled_frames);
   }
-  return {source.family, missed.family, doubled.family, wanted.family};
+  return {source.family, missed.family, doubled.family};
 }
 
 std::vector<MetricFamily> families_of_drift(const Figures& figures) {
@@ -264,6 +267,7 @@ std::vector<MetricFamily> metrics_of(const RigLook& look) {
   append(families, families_of_readers(model.rings));
   const auto figures = look.figures.value_or(Figures());
   families.push_back(stages_of(figures));
+  families.push_back(wanted_rates_of(figures));
   append(families, families_by_key(figures));
   append(families, families_of_light(figures));
   append(families, families_of_drift(figures));

@@ -55,10 +55,6 @@ std::string heading(const char* left, const char* right) {
                      "p50", "p99", "p99.9", "max", kAxis);
 }
 
-std::string name_of(msg::LightSource source) {
-  return std::string(msg::kLightSourceNames[static_cast<std::size_t>(source)]);
-}
-
 std::string rate_of(double hz) { return hz > 0 ? fmt::format("{:.1f} Hz", hz) : "-"; }
 
 json figures_in_us(const Spans& spans) {
@@ -92,23 +88,22 @@ json to_json(const LatencyTable& table) {
                       {"skipped_ids", misses.skipped_ids},
                       {"longest_gap_ms", ns_to_ms(misses.longest_gap_ns)},
                       {"lost_marks", misses.lost_marks}});
-  json light;
-  if (table.light.source)
-    light = {{"times_by", name_of(*table.light.source)},
-             {"missed_refreshes", table.light.missed},
-             {"doubled_frames", table.light.doubled}};
+  json lights = json::object();
+  for (const auto& [projector, light] : table.lights)
+    lights[projector] = {{"times_by", msg::name_of(light.source)},
+                         {"missed_refreshes", light.missed},
+                         {"doubled_frames", light.doubled}};
   return {{"seconds", table.seconds},
           {"stages", stages},
           {"end_to_end", ways},
           {"services", missed},
-          {"light", light}};
+          {"light", lights}};
 }
 
 std::string print_latency(const LatencyTable& table) {
   auto text = fmt::format(
-      "Latency over the last {:.1f} s. light: the middle of a frame's time on the surface, by the "
-      "{}.\n\n",
-      table.seconds, table.light.source ? name_of(*table.light.source) : "projector");
+      "Latency over the last {:.1f} s. light: the middle of a frame's time on the surface.\n\n",
+      table.seconds);
   text += heading("from", "to");
   for (const auto& [from, to, spans] : table.ways)
     if (spans.count() > 0) text += fmt::format("{:<20} {:<16} ", from, to) + figures_of(spans);
@@ -126,10 +121,11 @@ std::string print_latency(const LatencyTable& table) {
                     misses.wanted_hz > 0 ? std::to_string(misses.missed) : "-",
                     misses.wanted_hz > 0 ? std::to_string(misses.late) : "-", misses.skipped_ids,
                     time_of(misses.longest_gap_ns), misses.lost_marks);
-  if (table.light.source)
+  for (const auto& [projector, light] : table.lights)
     text += fmt::format(
-        "\nlight: {} refreshes without a new frame, {} frames shown for several refreshes\n",
-        table.light.missed, table.light.doubled);
+        "\nlight of {}: {} refreshes without a new frame, {} frames shown for several refreshes; "
+        "times by the {}\n",
+        projector, light.missed, light.doubled, msg::name_of(light.source));
   return text;
 }
 

@@ -10,22 +10,26 @@
 
 #include "ipc/base/clock.hpp"
 #include "supervisor/look/trace/made_frames.hpp"
+#include "supervisor/record/ledger.hpp"
 
 namespace handcast::supervisor {
 namespace {
 
 using msg::Stage;
 
-/// Collects the spans between pairs of events, in the order in which the pairs are first added.
+/// Collects the spans between pairs of events, in the order in which the pairs are first added,
+/// those of a second camera or projector last.
 class Ways {
  public:
-  void add(const char* from, const char* to, std::optional<std::int64_t> span_ns) {
+  void add(const std::string& from, const std::string& to, std::optional<std::int64_t> span_ns) {
     const auto same = [&](const Way& way) { return way.from == from && way.to == to; };
     auto found = std::ranges::find_if(ways_, same);
     if (found == ways_.end()) found = ways_.insert(ways_.end(), {from, to, {}});
     if (span_ns && *span_ns >= 0) found->spans_ns.push_back(*span_ns);
   }
   std::vector<WayLatency> take() {
+    const auto is_of_first = [](const Way& way) { return !way.to.ends_with('2'); };
+    std::ranges::stable_partition(ways_, is_of_first);
     std::vector<WayLatency> latencies;
     for (auto& way : ways_) latencies.push_back({way.from, way.to, Spans(std::move(way.spans_ns))});
     return latencies;
@@ -58,13 +62,17 @@ std::vector<StageLatency> stage_latencies(const HistorySnapshot& history) {
 
 std::vector<WayLatency> way_latencies(const HistorySnapshot& history) {
   Ways ways;
-  for (const auto& frame : history.frames) {
+  const auto named = [&](const char* event, const FrameRecord& frame) {
+    return name_at_instance(event, history.services[frame.service]);
+  };
+  for (const auto& frame : history.frames)
     if (const auto* capture = find_mark(frame, Stage::capture))
-      ways.add("exposure", "image delivered", age_of(frame.header.origin_ns, *capture));
-  }
+      ways.add(named("exposure", frame), named("image delivered", frame),
+               age_of(frame.header.origin_ns, *capture));
   for (const auto& frame : history.frames)
     if (const auto* detect = find_mark(frame, Stage::detect))
-      ways.add("exposure", "landmarks found", age_of(frame.header.origin_ns, *detect));
+      ways.add(named("exposure", frame), named("landmarks found", frame),
+               age_of(frame.header.origin_ns, *detect));
 
   std::set<std::size_t> shown;
   for (const auto& made : made_frames(history)) {
@@ -73,10 +81,11 @@ std::vector<WayLatency> way_latencies(const HistorySnapshot& history) {
     const auto* light = find_light(frame);
     if (!light) continue;
     const msg::StageMark begin{Stage::frame, 0, begun->begin_ns, begun->begin_ns};
-    ways.add("exposure", "frame begun", age_of(frame.made_from.image_ns, begin));
-    ways.add("exposure", "light", age_of(frame.made_from.image_ns, *light));
-    ways.add("landmarks' exposure", "light", age_of(frame.made_from.landmarks_ns, *light));
-    ways.add("pose sample", "light", age_of(frame.made_from.pose_ns, *light));
+    const auto lit = named("light", frame);
+    ways.add("exposure", named("frame begun", frame), age_of(frame.made_from.image_ns, begin));
+    ways.add("exposure", lit, age_of(frame.made_from.image_ns, *light));
+    ways.add("landmarks' exposure", lit, age_of(frame.made_from.landmarks_ns, *light));
+    ways.add("pose sample", lit, age_of(frame.made_from.pose_ns, *light));
     if (!made.image || !shown.insert(*made.image).second) continue;
     ways.add("image delivered", "first light",
              light->end_ns - find_mark(history.frames[*made.image], Stage::capture)->end_ns);
@@ -148,12 +157,13 @@ Misses misses_of(const HistorySnapshot& history, std::size_t service, double wan
   return misses;
 }
 
-LightCount light_of(const HistorySnapshot& history) {
-  LightCount light;
+std::map<std::string, LightCount> lights_of(const HistorySnapshot& history) {
+  std::map<std::string, LightCount> lights;
   for (const auto& frame : history.frames)
     if (const auto* mark = find_mark(frame, Stage::light))
-      if (const auto note = msg::light_note_in(mark->detail)) light.add(*note);
-  return light;
+      if (const auto note = msg::light_note_in(mark->detail))
+        lights[history.services[frame.service]].add(*note);
+  return lights;
 }
 
 double seconds_in(const HistorySnapshot& history) {
@@ -182,8 +192,11 @@ std::int64_t Spans::percentile_ns(double share) const {
 
 LatencyTable measure_latency(const HistorySnapshot& history,
                              const std::map<std::string, double>& wanted_hz) {
-  LatencyTable table{
-      seconds_in(history), stage_latencies(history), way_latencies(history), {}, light_of(history)};
+  LatencyTable table{seconds_in(history),
+                     stage_latencies(history),
+                     way_latencies(history),
+                     {},
+                     lights_of(history)};
   for (std::size_t service = 0; service < history.services.size(); ++service) {
     const auto asked = wanted_hz.find(history.services[service]);
     auto misses = misses_of(history, service, asked == wanted_hz.end() ? 0 : asked->second);

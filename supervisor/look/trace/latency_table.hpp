@@ -64,11 +64,11 @@ struct Misses {
 
 /// The contents of `handcast latency`.
 struct LatencyTable {
-  double seconds = 0;                ///< time from the first mark to the last
-  std::vector<StageLatency> stages;  ///< the stages of all services
-  std::vector<WayLatency> ways;      ///< the ways from sensors to light
-  std::vector<Misses> misses;        ///< the rates of all services with frames
-  LightCount light;                  ///< of the projector
+  double seconds = 0;                        ///< time from the first mark to the last
+  std::vector<StageLatency> stages;          ///< the stages of all services
+  std::vector<WayLatency> ways;              ///< the ways from sensors to light
+  std::vector<Misses> misses;                ///< the rates of all services with frames
+  std::map<std::string, LightCount> lights;  ///< by projector
 };
 
 /// Computes the table. `wanted_hz`: the configured rates by service; services without a fixed rate

@@ -30,7 +30,7 @@ def live_run():
             "services": {name: {"restarts": 0, "backend": "twin"} for name in ("camera", "pose", "landmarks", "projector")},
             "rates": {"camera": {"wanted_hz": 525.0, "held_hz": 498.21}, "landmarks": {"wanted_hz": None, "held_hz": 61.4},
                       "projector": {"wanted_hz": 946.0, "held_hz": 903.5}},
-            "slow_frames": {"count": 100, "least_us": 1912.0, "preempted": 61, "interrupted": 20, "page_faults": 0, "own": 19},
+            "slow_frames": {"projector": {"count": 100, "least_us": 1912.0, "preempted": 61, "interrupted": 20, "page_faults": 0, "own": 19}},
             "stage_us": {"capture": {"p50": 1240.0, "p99": 2600.0}, "detect": {"p50": 15010.0, "p99": 19800.0},
                          "present": {"p50": 3.0, "p99": 410.0}}}
 

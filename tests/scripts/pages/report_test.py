@@ -79,9 +79,12 @@ class TheReport(Report):
     def test_says_what_made_the_slowest_frames_slow(self):
         live = live_run()
         write_json(self.folder / "live.json", live)
-        self.assertIn("Of the 100 slowest frames of the projector (1.91 ms or more), 61 were preempted by other threads, 20 by interrupts",
+        self.assertIn("Of the 100 slowest frames of projector (1.91 ms or more), 61 were preempted by other threads, 20 by interrupts",
                       self.page())
-        live["slow_frames"] = None
+        live["slow_frames"]["projector2"] = {"count": 7}
+        write_json(self.folder / "live.json", live)
+        self.assertIn("Of the 7 slowest frames of projector2 (", self.page())
+        live["slow_frames"] = {}
         write_json(self.folder / "live.json", live)
         self.assertNotIn("slowest frames", self.page())
 

@@ -68,7 +68,7 @@ TEST(Ledger, TheStagesOfASecondProjectorAreCountedForThemselves) {
 
 TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
   Ledger ledger;
-  EXPECT_FALSE(ledger.light().source);
+  EXPECT_TRUE(ledger.lights().empty());
   auto marks = frame_at(kOneSecond_ns);
   marks.marks[0].stage = msg::Stage::light;
   for (const std::uint32_t refreshes : {0u, 1u, 4u, 1u, 2u}) {
@@ -79,9 +79,13 @@ TEST(Ledger, TheRefreshesWithoutANewFrameAreCounted) {
   ledger.add("projector", marks);
   marks.marks[0] = {msg::Stage::draw, msg::detail_of({msg::LightSource::window, 7}), 0, 1};
   ledger.add("projector", marks);
-  EXPECT_EQ(ledger.light().source, msg::LightSource::kernel);
-  EXPECT_EQ(ledger.light().missed, 4u);
-  EXPECT_EQ(ledger.light().doubled, 2u);
+  marks.marks[0] = {msg::Stage::light, msg::detail_of({msg::LightSource::window, 3}), 0, 1};
+  ledger.add("projector2", marks);
+  const auto light = ledger.lights().at("projector");
+  EXPECT_EQ(light.source, msg::LightSource::kernel);
+  EXPECT_EQ(light.missed, 4u);
+  EXPECT_EQ(light.doubled, 2u);
+  EXPECT_EQ(ledger.lights().at("projector2").missed, 2u);
 }
 
 TEST(Ledger, TheSlowestFramesAreKeptWithTheirCausesAfterTheFirstSecond) {
@@ -93,15 +97,16 @@ TEST(Ledger, TheSlowestFramesAreKeptWithTheirCausesAfterTheFirstSecond) {
     ledger.add("projector", marks);
   };
   add(kOneSecond_ns, 50'000, {40'000, 1, 1});  // the start
-  EXPECT_EQ(ledger.slow_frames().count(), 0u);
+  EXPECT_TRUE(ledger.slow_frames().empty());
   for (int i = 0; i < 500; ++i) add(3 * kOneSecond_ns + i * kMs, 1000, {});
   for (int i = 0; i < 40; ++i) add(4 * kOneSecond_ns + i * kMs, 2000 + i, {300, 2, 9});
   for (int i = 0; i < 30; ++i) add(5 * kOneSecond_ns + i * kMs, 2000, {200, 0, 0});
   for (int i = 0; i < 20; ++i) add(6 * kOneSecond_ns + i * kMs, 2000, {100, 1, 7});
   for (int i = 0; i < 10; ++i) add(7 * kOneSecond_ns + i * kMs, 2000, {199, 1, 0});
-  const auto causes = ledger.slow_frames().causes();
-  EXPECT_EQ(ledger.slow_frames().count(), 100u);
-  EXPECT_EQ(ledger.slow_frames().least_ns(), 2'000'000);
+  const auto& slow = ledger.slow_frames().at("projector");
+  const auto causes = slow.causes();
+  EXPECT_EQ(slow.count(), 100u);
+  EXPECT_EQ(slow.least_ns(), 2'000'000);
   EXPECT_EQ(causes.preempted, 40u);
   EXPECT_EQ(causes.interrupted, 30u);
   EXPECT_EQ(causes.faulted, 20u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live picture: a stream of packets, each a JSON text and two JPEG files (see picture_feed.hpp).
+// The live picture: a stream of packets, each a JSON text and three JPEG files (see picture_feed.hpp).
 
 import {$, setText} from '/dom.js';
 import {sharp} from '/chart.js';
@@ -26,7 +26,7 @@ class Packets {
     const view = new DataView(this.bytes.buffer, this.bytes.byteOffset, this.bytes.length);
     const parts = [];
     let at = 0;
-    for (let i = 0; i < 3; ++i) {
+    for (let i = 0; i < 4; ++i) {
       if (at + 4 > this.bytes.length) return null;
       const size = view.getUint32(at, true);
       if (at + 4 + size > this.bytes.length) return null;
@@ -101,7 +101,7 @@ export class Picture {
     }
   }
 
-  async show([head, camera, light]) {
+  async show([head, camera, light, light2]) {
     if (head.length === 0) {
       setText($('picture-text'), 'no new images');
       return;
@@ -109,7 +109,11 @@ export class Picture {
     const about = JSON.parse(new TextDecoder().decode(head));
     if (about.landmarks) this.landmarks = {places: about.landmarks, when: performance.now()};
     if (camera.length > 0) this.drawCamera(await decode(camera), about);
-    if (about.light) this.drawLight(light.length > 0 ? await decode(light) : null, about.light);
+    if (about.light) this.drawLight($('light'), light.length > 0 ? await decode(light) : null, about.light);
+    if (about.light2) {
+      $('second-light').hidden = false;
+      this.drawLight($('light2'), light2.length > 0 ? await decode(light2) : null, about.light2);
+    }
     this.tellRate(about);
   }
 
@@ -126,8 +130,7 @@ export class Picture {
       for (const places of Object.values(about.joints)) drawPoints(context, places, scale, kJointBones, '#f2a33c', 2);
   }
 
-  drawLight(image, light) {
-    const canvas = $('light');
+  drawLight(canvas, image, light) {
     canvas.style.aspectRatio = `${light.width} / ${light.height}`;
     const {context, width, height} = sharp(canvas);
     const scale = width / light.width;

@@ -114,7 +114,9 @@ function rungShares(counts) {
 function showFacts(status) {
   const facts = [];
   const sum = (counts) => Object.values(counts ?? {}).reduce((all, count) => all + count, 0);
-  if (status.light) facts.push(['missed refreshes', String(status.light.missed_refreshes ?? 0)]);
+  const lights = Object.entries(status.light ?? {});
+  for (const [projector, light] of lights)
+    facts.push([`missed refreshes${lights.length > 1 ? ` of ${projector}` : ''}`, String(light.missed_refreshes ?? 0)]);
   if (status.lost_images) facts.push(['lost images', String(sum(status.lost_images))]);
   if (status.tracker_faults) facts.push(['faults of the tracker', String(sum(status.tracker_faults))]);
   const rungs = rungShares(status.rungs ?? {});

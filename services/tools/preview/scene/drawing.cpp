@@ -78,11 +78,6 @@ void each_triangle(const msg::ProjectedHand& hand, const renderer::HandMesh& mes
   }
 }
 
-/// True up to one image outside of the image; farther out the polynomial of the lens may fold.
-bool is_near(const calib::CameraModel& camera, glm::dvec2 px) {
-  return std::abs(px.x) < 2.0 * camera.width_px && std::abs(px.y) < 2.0 * camera.height_px;
-}
-
 }  // namespace
 
 bool is_sound(const msg::Projection& projection) {
@@ -114,14 +109,13 @@ Image<std::uint8_t> coverage(const msg::Projection& projection, const Meshes& me
 
 std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedHand& hand,
                                                            const Meshes& meshes,
-                                                           const calib::Calibration& calibration) {
+                                                           const FromCamera& from_camera) {
   const auto* mesh = mesh_of(hand, meshes);
   if (!mesh) return {};
   std::vector<glm::vec2> image_px(mesh->vertex_count(), glm::vec2(kFarthest_px));
   for (std::size_t i = 0; i < image_px.size(); ++i) {
     if (!is_sound(landing(hand, i))) continue;
-    const auto px = calibration.projector.camera_pixel_of(landing(hand, i));
-    if (is_near(calibration.camera, px)) image_px[i] = calibration.camera.distort(px);
+    image_px[i] = from_camera.image_px_of(landing(hand, i)).value_or(image_px[i]);
   }
   std::vector<std::pair<std::uint16_t, std::uint16_t>> edges;
   each_triangle(hand, *mesh, [&](const auto& triangle, const Corners&) {

@@ -92,15 +92,19 @@ std::optional<renderer::Similarity> Hands::motion(msg::Side side, std::int64_t f
   return renderer::fit_similarity(*from, *to);
 }
 
-std::vector<glm::vec2> Hands::joints_of(const msg::HandPose& pose) const {
-  std::vector<glm::vec2> joints;
+/// Shows no joint if one is behind the camera.
+void Hands::show_joints(const msg::HandPose& pose, ShownHand& hand) const {
+  std::vector<glm::vec2> joints_px;
+  std::vector<float> depths_m;
   for (const auto& joint : pose.joints) {
     const auto& [x, y, z] = joint.position_m;
     const glm::dvec3 in_camera(calibration_.camera_from_tracker * glm::dvec4(x, y, z, 1));
-    if (!(in_camera.z > kNearest_m)) return {};
-    joints.push_back(calibration_.camera.distort(calibration_.camera.project(in_camera)));
+    if (!(in_camera.z > kNearest_m)) return;
+    joints_px.push_back(calibration_.camera.distort(calibration_.camera.project(in_camera)));
+    depths_m.push_back(static_cast<float>(in_camera.z));
   }
-  return joints;
+  hand.joints_px = std::move(joints_px);
+  hand.depths_m = std::move(depths_m);
 }
 
 void Hands::show_landmarks(std::int64_t time_ns, ShownHand& hand) const {
@@ -120,7 +124,7 @@ void Hands::show_landmarks(std::int64_t time_ns, ShownHand& hand) const {
 
 std::optional<ShownHand> Hands::at(msg::Side side, std::int64_t time_ns) const {
   ShownHand hand{.side = side, .joints_px = {}};
-  if (const auto pose = pose_at(side, time_ns)) hand.joints_px = joints_of(*pose);
+  if (const auto pose = pose_at(side, time_ns)) show_joints(*pose, hand);
   show_landmarks(time_ns, hand);
   const bool has_landmarks =
       std::ranges::any_of(hand.landmarks, [](const auto& mark) { return mark.has_value(); });

@@ -35,6 +35,7 @@ struct ShownHand {
   msg::Side side = msg::Side::left;  ///< which hand it is
   /// The joints of the tracker in the image, in the order of msg::HandPose; empty: there is none.
   std::vector<glm::vec2> joints_px;
+  std::vector<float> depths_m;  ///< of the joints, their distance along the camera's axis
   /// The landmarks; empty for those that the detector did not see.
   std::array<std::optional<ShownLandmark>, msg::kLandmarks> landmarks{};
 };

@@ -16,14 +16,16 @@
 
 namespace handcast::preview {
 
-Result<World> load_world(const config::Rig& rig) {
-  auto calibration = calib::load_calibration(rig.calibration, rig.projector.packing);
+Result<World> load_world(const config::Rig& rig, config::Viewpoint projector) {
+  auto calibration = calib::load_calibration(rig.calibration, rig.projector, rig.projector2);
   if (!calibration) return tl::make_unexpected(std::move(calibration.error()));
-  World world{.calibration = *calibration,
+  if (projector == config::Viewpoint::second && !calibration->projector2)
+    return fail(Errc::bad_config, "the rig has no second projector (projector2.backend)");
+  World world{.calibration = calib::at_projector(std::move(*calibration), projector),
               .mask = rig.cascade.mask,
               .predict = rig.cascade.predict,
               .hands = {},
-              .brightness = rig.projector.brightness};
+              .brightness = config::rig_at_projector(rig, projector).projector.brightness};
   for (const auto& [side, file] :
        {std::pair{msg::Side::left, rig.hand.left}, std::pair{msg::Side::right, rig.hand.right}}) {
     auto mesh = renderer::load_hand_or_default(file, side);
@@ -31,27 +33,6 @@ Result<World> load_world(const config::Rig& rig) {
     world.hands[static_cast<std::size_t>(side)] = std::move(*mesh);
   }
   return world;
-}
-
-static constexpr int kStep_px = 8;
-
-FromCamera::FromCamera(const calib::Calibration& calibration)
-    : columns_(calibration.camera.width_px / kStep_px + 2),
-      rows_(calibration.camera.height_px / kStep_px + 2) {
-  for (int row = 0; row < rows_; ++row)
-    for (int column = 0; column < columns_; ++column)
-      table_.emplace_back(calibration.projector.pixel_of(
-          calibration.camera.undistort(glm::dvec2(column * kStep_px, row * kStep_px))));
-}
-
-glm::vec2 FromCamera::operator()(glm::vec2 image_px) const {
-  const glm::vec2 at = image_px / static_cast<float>(kStep_px);
-  const int column = std::clamp(static_cast<int>(std::floor(at.x)), 0, columns_ - 2),
-            row = std::clamp(static_cast<int>(std::floor(at.y)), 0, rows_ - 2);
-  const float u = at.x - static_cast<float>(column), v = at.y - static_cast<float>(row);
-  const auto* top = &table_[static_cast<std::size_t>(row) * columns_ + column];
-  const auto* bottom = top + columns_;
-  return (1 - v) * ((1 - u) * top[0] + u * top[1]) + v * ((1 - u) * bottom[0] + u * bottom[1]);
 }
 
 namespace {
@@ -100,7 +81,7 @@ renderer::Rect around(const std::vector<glm::vec2>& points) {
 
 /// The part of the image that shows the hands or their light.
 renderer::Rect busy_part(const std::vector<ShownHand>& hands, const msg::Projection& projection,
-                         const calib::Calibration& calibration) {
+                         const FromCamera& from_camera) {
   renderer::Rect part;
   for (const auto& hand : hands) part = part.joined(around(hand.joints_px));
   const double left = projection.region_x_px, top = projection.region_y_px,
@@ -109,7 +90,7 @@ renderer::Rect busy_part(const std::vector<ShownHand>& hands, const msg::Project
   std::vector<glm::vec2> corners;
   for (const auto corner : {glm::dvec2(left, top), glm::dvec2(right, top), glm::dvec2(left, bottom),
                             glm::dvec2(right, bottom)})
-    corners.emplace_back(calibration.camera.distort(calibration.projector.camera_pixel_of(corner)));
+    if (const auto px = from_camera.image_px_of(corner)) corners.push_back(*px);
   if (projection.region_width_px > 0) part = part.joined(around(corners));
   return part;
 }
@@ -213,13 +194,24 @@ bool SceneMaker::is_forearm(glm::vec2 px) const {
   });
 }
 
+/// Their joints are where they are at the time of the light.
+void SceneMaker::place_hands(const Scene& scene, const std::vector<Motion>& motions) {
+  std::vector<glm::vec3> joints;
+  for (const auto& motion : motions) {
+    const auto& hand = *std::ranges::find(scene.hands, motion.side, &ShownHand::side);
+    for (std::size_t i = 0; i < hand.joints_px.size(); ++i)
+      joints.emplace_back(motion.to_light(hand.joints_px[i]), hand.depths_m[i]);
+  }
+  from_camera_->place(std::move(joints));
+}
+
 void SceneMaker::add_light(const msg::Projection& projection, const std::vector<Motion>& motions,
                            Scene& scene) {
   const auto covered = coverage(projection, world_->hands);
   const int width = scene.camera.width(), height = scene.camera.height();
   scene.light_on_camera = renderer::Texture(width, height);
   if (hand_px_.data) scene.regions = renderer::Image<std::uint8_t>(width, height);
-  const auto part = busy_part(scene.hands, projection, world_->calibration).within(width, height);
+  const auto part = busy_part(scene.hands, projection, *from_camera_).within(width, height);
   for (int y = part.y0; y < part.y1; ++y)
     for (int x = part.x0; x < part.x1; ++x) {
       const glm::vec2 px(x, y);
@@ -247,7 +239,7 @@ void SceneMaker::add_drawing(const msg::Projection& projection, const std::vecto
     const auto& hand = projection.hands[i];
     const auto motion = std::ranges::find(motions, hand.side, &Motion::side);
     const auto to_image = motion == motions.end() ? Similarity{} : motion->to_image;
-    for (const auto& [from, to] : visible_edges(hand, world_->hands, world_->calibration))
+    for (const auto& [from, to] : visible_edges(hand, world_->hands, *from_camera_))
       scene.drawing.emplace_back(to_image(from), to_image(to));
   }
 }
@@ -290,6 +282,7 @@ Scene SceneMaker::make(const msg::CameraFrame* frame, const msg::Projection* pro
   if (!projection) return scene;
   const auto moves =
       motions(scene, sane_ns(frame->header.origin_ns), sane_ns(projection->target_ns));
+  place_hands(scene, moves);
   add_light(*projection, moves, scene);
   add_drawing(*projection, moves, scene);
   return scene;

@@ -19,6 +19,7 @@
 #include "renderer/mask/hand_mask.hpp"
 #include "renderer/output/light.hpp"
 #include "renderer/predict/hand_track.hpp"
+#include "services/tools/preview/scene/from_camera.hpp"
 #include "services/tools/preview/scene/scene.hpp"
 
 namespace handcast::preview {
@@ -38,7 +39,7 @@ renderer::Image<std::uint8_t> coverage(const msg::Projection& projection, const 
 /// pixels of the camera's image at the time of the light. Leaves out what coverage() does.
 std::vector<std::pair<glm::vec2, glm::vec2>> visible_edges(const msg::ProjectedHand& hand,
                                                            const Meshes& meshes,
-                                                           const calib::Calibration& calibration);
+                                                           const FromCamera& from_camera);
 
 /// The whole image of the projector at a brightness 0..1, as levels of a screen: black and
 /// transparent outside of the lit region, and everywhere if the brightness is 0.
@@ -72,7 +73,7 @@ class Hands {
     return tracks_[static_cast<std::size_t>(side)];
   }
   const msg::Landmarks* detection_near(msg::Side side, std::int64_t time_ns) const;
-  std::vector<glm::vec2> joints_of(const msg::HandPose& pose) const;
+  void show_joints(const msg::HandPose& pose, ShownHand& hand) const;
   void show_landmarks(std::int64_t time_ns, ShownHand& hand) const;
 
   calib::Calibration calibration_;
@@ -89,24 +90,9 @@ struct World {
   double brightness = 1;                                 ///< projector.brightness
 };
 
-/// Reads the files that a rig names. Errors: bad_config.
-Result<World> load_world(const config::Rig& rig);
-
-/// The map from pixels of the camera's image to pixels of the projector (lens distortion and
-/// homography), as a table that is computed once per calibration.
-class FromCamera {
- public:
-  /// Computes the table.
-  explicit FromCamera(const calib::Calibration& calibration);
-
-  /// The projector pixel that lights this position of the image. Positions outside of the image
-  /// are continued.
-  glm::vec2 operator()(glm::vec2 image_px) const;
-
- private:
-  int columns_ = 0, rows_ = 0;
-  std::vector<glm::vec2> table_;  ///< every 8th pixel of every 8th row; bilinear in between
-};
+/// Reads the files that a rig names. `projector`: whose light is shown. Errors: bad_config (a file
+/// cannot be used, the rig has no second projector).
+Result<World> load_world(const config::Rig& rig, config::Viewpoint projector);
 
 /// Where the mask cuts a forearm off (renderer::HandHint), image px.
 struct ForearmCut {
@@ -150,6 +136,7 @@ class SceneMaker {
                               std::int64_t light_ns) const;
   void find_mask(const msg::CameraFrame& frame);
   bool is_forearm(glm::vec2 px) const;
+  void place_hands(const Scene& scene, const std::vector<Motion>& motions);
   void add_light(const msg::Projection& projection, const std::vector<Motion>& motions,
                  Scene& scene);
   void add_drawing(const msg::Projection& projection, const std::vector<Motion>& motions,

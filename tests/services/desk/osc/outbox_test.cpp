@@ -93,12 +93,12 @@ TEST(OscValues, WhatAReceiverSetsComesBackToItLaterAndToOthersAtOnce) {
 TEST(OscFigures, AreThoseOfTheStatus) {
   const auto status = json::parse(R"({"rings": {"camera.frames": {"held_hz": 525.5},
       "content.left": {"held_hz": null}}, "services": {"pose": {"state": "ready"}, "odd": 3},
-      "light": {"missed_refreshes": 2}, "lost_images": {"missing": 3, "skipped": 4},
+      "light": {"projector": {"missed_refreshes": 2}, "projector2": {"missed_refreshes": 3}}, "lost_images": {"missing": 3, "skipped": 4},
       "tracker_faults": {"late": 5}, "tracker_drift": {"across_mm": 1.5},
       "stage_us": {"draw": {"p50": 500.0, "p99": 1500.0}}})");
   EXPECT_THAT(print_all({write_figures(status)}),
               testing::UnorderedElementsAre("/rate/camera/frames 526", "/service/pose ready",
-                                            "/time/draw 0.5 1.5", "/error/missed_refreshes 2",
+                                            "/time/draw 0.5 1.5", "/error/missed_refreshes 5",
                                             "/error/lost_images 7", "/error/tracker_faults 5",
                                             "/error/drift_mm 1.5"));
   for (const auto* odd : {"{}", "[]", "null", R"({"rings": 7, "light": null, "services": []})"})

@@ -2,9 +2,12 @@
 // What an open page is told, and what its changes do.
 #include <gmock/gmock.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "ipc/msg/camera_frame.hpp"
+#include "ipc/msg/projection.hpp"
 #include "ipc/ring/writer.hpp"
 #include "tests/services/desk/page/fake_rig.hpp"
 #include "tests/services/desk/page/open_page.hpp"
@@ -121,30 +124,63 @@ TEST_F(PageTest, ARigThatIsAwayIsASentence) {
   EXPECT_EQ(post("/api/service/restart", R"({"service":"pose"})", Role::owner).status, 503);
 }
 
+/// A ring of the rig that gets a message every 5 ms. `fill`: all of it but the header.
+template <class T>
+class Publisher {
+ public:
+  Publisher(FakeRig& rig, const char* ring, std::size_t bytes, std::function<void(T&)> fill)
+      : segment_(*ipc::Segment::create(ipc::RingSpec::of<T>(std::string(ring), 4, false, bytes))),
+        writer_(*ipc::Writer<T>::attach(*ipc::Segment::open(UniqueFd(::dup(segment_.fd()))),
+                                        Deadline::now())) {
+    rig.give(ring, segment_.fd());
+    thread_ = std::jthread([this, fill = std::move(fill)](const std::stop_token& stop) {
+      for (std::uint64_t id = 1; !stop.stop_requested(); ++id) {
+        auto message = writer_.loan();
+        message->header.frame_id = id;
+        message->header.origin_ns = now_ns();
+        fill(*message);
+        writer_.publish(std::move(message));
+        sleep_until_ns(now_ns() + 5'000'000);
+      }
+    });
+  }
+
+ private:
+  ipc::Segment segment_;
+  ipc::Writer<T> writer_;
+  std::jthread thread_;
+};
+
 TEST_F(PageTest, ThePictureIsSentWithWhatIsInIt) {
   FakeRig rig(rig_.name);
-  const auto segment = *ipc::Segment::create(ipc::RingSpec::of<msg::CameraFrame>(
-      "camera.frames", 4, false, msg::CameraFrame::bytes(720, 540)));
-  rig.give("camera.frames", segment.fd());
-  auto writer = ipc::Writer<msg::CameraFrame>::attach(
-      *ipc::Segment::open(UniqueFd(::dup(segment.fd()))), Deadline::now());
-  ASSERT_TRUE(writer) << writer.error().what;
-  std::jthread camera([&](const std::stop_token& stop) {
-    for (std::uint64_t id = 1; !stop.stop_requested(); ++id) {
-      auto frame = writer->loan();
-      frame->header.frame_id = id;
-      frame->header.origin_ns = now_ns();
-      frame->width_px = 720;
-      frame->height_px = 540;
-      std::fill_n(frame->pixels(), 720 * 540, static_cast<std::uint8_t>(id));
-      writer->publish(std::move(frame));
-      sleep_until_ns(now_ns() + 5'000'000);
-    }
-  });
+  const Publisher<msg::CameraFrame> camera(
+      rig, "camera.frames", msg::CameraFrame::bytes(720, 540), [](msg::CameraFrame& frame) {
+        frame.width_px = 720;
+        frame.height_px = 540;
+        std::fill_n(frame.pixels(), 720 * 540, static_cast<std::uint8_t>(frame.header.frame_id));
+      });
   const auto picture = stream("/api/picture", Role::viewer, "\xff\xd9");
   const auto& text = picture->receive("\xff\xd9");
   EXPECT_THAT(text, HasSubstr("\"width\":720"));
   EXPECT_THAT(text, HasSubstr("\xff\xd8\xff"));
+}
+
+TEST_F(PageTest, TheLightOfASecondProjectorIsSent) {
+  FakeRig rig(rig_.name);
+  const Publisher<msg::Projection> light(rig, "projection2.frames", msg::Projection::bytes(64, 48),
+                                         [](msg::Projection& frame) {
+                                           frame.width_px = 1024;
+                                           frame.height_px = 768;
+                                           frame.region_x_px = 300;
+                                           frame.region_width_px = 64;
+                                           frame.region_height_px = 48;
+                                           std::fill_n(frame.pixels(), 64 * 48, 0xff00ff00u);
+                                         });
+  const auto picture = stream("/api/picture", Role::viewer, "\xff\xd9");
+  const auto& text = picture->receive("\xff\xd9");
+  EXPECT_THAT(text, HasSubstr("\"light2\":"));
+  EXPECT_THAT(text, HasSubstr("\"x\":300"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("\"light\":")));
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ nlohmann::json status() {
         {"landmarks.hands", stream(120)},
         {"projection.frames", stream(360)}}},
       {"stage_us", nlohmann::json::object()},
-      {"light", {{"missed_refreshes", 0}, {"doubled_frames", 2}}},
+      {"light", {{"projector", {{"missed_refreshes", 0}, {"doubled_frames", 2}}}}},
       {"lost_images", {{"missing", 0}, {"skipped", 3}}},
       {"tracker_faults", {{"absent", 1}}},
       {"rungs", {{"hold", 40}, {"register", 3560}}},

@@ -53,12 +53,24 @@ TEST(Status, StagesAreInTheOrderOfAFrame) {
       {"stage_us",
        {{"fill", {{"p50", 180}, {"p99", 900}}}, {"capture", {{"p50", 1300}, {"p99", 5000}}}}}};
   Gauges gauges;
-  read_status(status, gauges);
+  read_status(status, config::Viewpoint::first, gauges);
   EXPECT_EQ(gauges.uptime_s, 12.5);
   EXPECT_THAT(gauges.ill, IsEmpty());
   ASSERT_EQ(gauges.stages.size(), 2u);
   EXPECT_EQ(gauges.stages[0].stage, "capture");
   EXPECT_EQ(gauges.stages[1].p99_us, 900);
+}
+
+TEST(Status, TheStagesOfAFrameAreThoseOfTheProjectorThatIsShown) {
+  const auto us = [](int p50) { return json{{"p50", p50}, {"p99", 9}}; };
+  const json status{
+      {"stage_us", {{"capture", us(1)}, {"capture2", us(2)}, {"draw", us(3)}, {"draw2", us(4)}}}};
+  Gauges gauges;
+  read_status(status, config::Viewpoint::second, gauges);
+  ASSERT_EQ(gauges.stages.size(), 2u);
+  EXPECT_EQ(gauges.stages[0].p50_us, 1) << "there is one camera for both";
+  EXPECT_EQ(gauges.stages[1].stage, "draw");
+  EXPECT_EQ(gauges.stages[1].p50_us, 4);
 }
 
 TEST(Status, AServiceThatIsNotWellIsNamedWithItsReason) {
@@ -67,7 +79,7 @@ TEST(Status, AServiceThatIsNotWellIsNamedWithItsReason) {
                 {{"camera", {{"state", "degraded"}, {"reason", "died 10 times"}}},
                  {"pose", {{"state", "starting"}, {"reason", nullptr}}},
                  {"landmarks", {{"state", "stopped"}}}}}},
-              gauges);
+              config::Viewpoint::first, gauges);
   EXPECT_THAT(gauges.ill, ElementsAre("camera is degraded: died 10 times", "pose is starting"));
 }
 
@@ -77,7 +89,7 @@ TEST(Status, AnswersOfAnotherFormAreLeftOut) {
         json{{"uptime_s", "long"}, {"stage_us", {{"fill", 3}, {"draw", {{"p50", "x"}}}}}},
         json{{"services", {{"camera", nullptr}}}}}) {
     Gauges gauges;
-    read_status(status, gauges);
+    read_status(status, config::Viewpoint::first, gauges);
     EXPECT_EQ(gauges.uptime_s, 0);
     EXPECT_THAT(gauges.stages, IsEmpty());
     EXPECT_EQ(wanted_hz(status, "camera.frames"), std::nullopt);

@@ -16,7 +16,7 @@ Result<Parsed> parse_words(std::vector<std::string> words) {
 
 TEST(PreviewOptions, AreReadFromTheCommandLine) {
   const auto parsed = parse_words({"--rig", "twin", "--shot", "a.png", "--after", "0.5", "--layers",
-                                   "image", "--size", "640x480"});
+                                   "image", "--size", "640x480", "--second-projector"});
   ASSERT_TRUE(parsed);
   EXPECT_EQ(parsed->options.rig, "twin");
   EXPECT_EQ(parsed->options.shot, "a.png");
@@ -24,6 +24,7 @@ TEST(PreviewOptions, AreReadFromTheCommandLine) {
   EXPECT_EQ(parsed->options.look.layers.to_ulong(), 1u);
   EXPECT_EQ(parsed->options.look.width_px, 640);
   EXPECT_EQ(parsed->options.look.height_px, 480);
+  EXPECT_EQ(parsed->options.projector, config::Viewpoint::second);
 }
 
 TEST(PreviewOptions, NonsenseIsRefusedWithASentence) {

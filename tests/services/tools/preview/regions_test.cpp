@@ -10,24 +10,29 @@ using namespace test;
 
 constexpr glm::dvec2 kMiddle(360, 270);  ///< of the image
 
+/// The pixel of the projector that lights a hand at a position of the image.
+glm::vec2 lands(const World& in, glm::dvec2 image_px) {
+  const auto& [projector, camera] = std::tie(in.calibration.projector, in.calibration.camera);
+  return projector.pixel_of(camera.undistort(image_px), kDistance_m);
+}
+
 /// A hand that stands still in the middle: the image is bright within 60 px of it.
 struct StillHand {
-  SceneMaker maker{world()};
+  World seen = world();
+  SceneMaker maker{seen};
   msg::Owned<msg::CameraFrame> image = frame();
   msg::Owned<msg::Projection> cast = light();
 
-  StillHand() {
+  explicit StillHand(World in = world()) : seen(std::move(in)) {
     for (int i = 0; i <= 6; ++i) maker.push(poses((980 + 10 * i) * kMs, kMiddle));
     for (int y = 210; y < 330; ++y)
       for (int x = 300; x < 420; ++x) image->pixels()[y * 720 + x] = 200;
   }
 
-  static glm::vec2 lands(glm::dvec2 image_px) {
-    const auto calibration = world().calibration;
-    return calibration.projector.pixel_of(calibration.camera.undistort(image_px));
-  }
   /// The drawing between two positions of the image.
-  void draw(glm::dvec2 low, glm::dvec2 high) { draw_square(*cast, lands(low), lands(high)); }
+  void draw(glm::dvec2 low, glm::dvec2 high) {
+    draw_square(*cast, lands(seen, low), lands(seen, high));
+  }
 };
 
 Region at(const Scene& scene, int x, int y) { return static_cast<Region>(scene.regions.at(x, y)); }
@@ -48,6 +53,23 @@ TEST(Regions, HandAndDrawingMakeFour) {
       << "the drawing";
 }
 
+TEST(Regions, TheLightOfAProjectorBesideTheCameraIsShownWhereItMeetsTheHand) {
+  auto beside = world();
+  beside.calibration.projector.parallax = {120, 30, 0};  // 80 px at the hand
+  StillHand hand(beside);
+  hand.draw({300, 210}, {360, 330});
+  const auto scene = hand.maker.make(&*hand.image, &*hand.cast);
+  EXPECT_EQ(at(scene, 303, 270), Region::lit);
+  EXPECT_EQ(at(scene, 357, 270), Region::lit);
+  EXPECT_EQ(at(scene, 363, 270), Region::unlit);
+  ASSERT_FALSE(scene.drawing.empty());
+  for (const auto& [from, to] : scene.drawing)
+    for (const auto px : {from, to}) {
+      EXPECT_NEAR(std::abs(px.x - 330), 30, 1.5);
+      EXPECT_NEAR(std::abs(px.y - 270), 60, 1.5);
+    }
+}
+
 TEST(Regions, TheDrawnForearmIsNotBesideTheHand) {
   StillHand hand;
   hand.draw({320, 150}, {450, 300});
@@ -63,7 +85,7 @@ TEST(Regions, TheDrawingIsShownAtTheTimeOfTheImage) {
   for (int i = 0; i <= 6; ++i)
     maker.push(poses((980 + 10 * i) * kMs, kMiddle + glm::dvec2(6 * (i - 2), 0)));
   auto cast = light(1020 * kMs);  // 20 ms, 12 px after the image
-  draw_square(*cast, StillHand::lands({342, 240}), StillHand::lands({402, 300}));
+  draw_square(*cast, lands(world(), {342, 240}), lands(world(), {402, 300}));
   const auto scene = maker.make(&*frame(), &*cast);
   ASSERT_FALSE(scene.drawing.empty());
   float left = 1e6, right = -1e6;

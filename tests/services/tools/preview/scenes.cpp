@@ -55,7 +55,6 @@ void draw_square(msg::Projection& projection, glm::vec2 low, glm::vec2 high) {
 }
 
 msg::HandPoses poses(std::int64_t origin_ns, glm::dvec2 image_px) {
-  constexpr double kDistance_m = 0.5;
   const auto calibration = world().calibration;
   const auto tracker_from_camera = glm::inverse(calibration.camera_from_tracker);
   msg::HandPoses poses;

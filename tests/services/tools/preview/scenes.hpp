@@ -10,6 +10,7 @@
 namespace handcast::preview::test {
 
 inline constexpr std::int64_t kImage_ns = 1000 * kMs;
+inline constexpr double kDistance_m = 0.5;  ///< of the hands from the camera
 
 /// The reference rig, whose hands are squares of four vertices.
 World world();
@@ -20,8 +21,8 @@ msg::Owned<msg::Projection> light(std::int64_t target_ns = kImage_ns);
 /// The vertices of the left hand at the corners of a rectangle of projector px.
 void draw_square(msg::Projection& projection, glm::vec2 low, glm::vec2 high);
 
-/// A tracker sample with a left hand whose middle is seen at `image_px`, half a metre away. Its
-/// joints are on a grid of 20 px.
+/// A tracker sample with a left hand whose middle is seen at `image_px`. Its joints are on a grid
+/// of 20 px.
 msg::HandPoses poses(std::int64_t origin_ns, glm::dvec2 image_px);
 /// A detection of a left hand; all landmarks at `px`.
 msg::Landmarks landmarks(std::int64_t origin_ns, glm::vec2 px, float sigma_px = 2);

@@ -48,30 +48,36 @@ TEST(StatusText, ABackEndInPlaceOfAnotherIsToldWithIt) {
 }
 
 TEST(StatusText, SaysWhoKnowsWhenLightComes) {
+  const auto light = [](const char* times_by, int missed) {
+    return json{{"times_by", times_by}, {"missed_refreshes", missed}, {"doubled_frames", 2}};
+  };
   auto status = status_with(
-      {{"rings",
-        {{"projection.frames",
-          {{"wanted_hz", 60}, {"held_hz", 59.5}, {"newest_age_ms", 1}, {"count", 9}}}}},
-       {"light", {{"times_by", "kernel"}, {"missed_refreshes", 12345678}, {"doubled_frames", 2}}}});
-  EXPECT_THAT(text_of(status),
-              HasSubstr("light: 59.5 Hz of 60 Hz; 12345678 refreshes without a new frame, 2 frames "
-                        "shown for several refreshes; times by the kernel\n"));
-  status["light"] = nullptr;
-  EXPECT_THAT(text_of(status), Not(HasSubstr("light:")));
+      {{"light",
+        {{"projector", light("kernel", 12345678)}, {"projector2", light("settings", 4)}}}});
+  EXPECT_THAT(
+      text_of(status),
+      HasSubstr("light of projector: 12345678 refreshes without a new frame, 2 frames shown "
+                "for several refreshes; times by the kernel\n"));
+  EXPECT_THAT(text_of(status), HasSubstr("light of projector2: 4 refreshes"));
+  status["light"] = json::object();
+  EXPECT_THAT(text_of(status), Not(HasSubstr("light of")));
 }
 
 TEST(StatusText, SaysWhatMadeTheSlowestFramesSlow) {
   auto status = status_with({{"slow_frames",
-                              {{"count", 100},
-                               {"least_us", 1900.5},
-                               {"preempted", 60},
-                               {"interrupted", 20},
-                               {"page_faults", 5},
-                               {"own", 15}}}});
-  EXPECT_THAT(text_of(status),
-              HasSubstr("slowest 100 frames, 1.90 ms or more: 60 preempted by other threads, 20 "
-                        "interrupted, 5 with page faults, 15 slow by themselves\n"));
-  status["slow_frames"] = nullptr;
+                              {{"projector",
+                                {{"count", 100},
+                                 {"least_us", 1900.5},
+                                 {"preempted", 60},
+                                 {"interrupted", 20},
+                                 {"page_faults", 5},
+                                 {"own", 15}}}}}});
+  EXPECT_THAT(
+      text_of(status),
+      HasSubstr(
+          "slowest 100 frames of projector, 1.90 ms or more: 60 preempted by other threads, 20 "
+          "interrupted, 5 with page faults, 15 slow by themselves\n"));
+  status["slow_frames"] = json::object();
   EXPECT_THAT(text_of(status), Not(HasSubstr("slowest")));
 }
 

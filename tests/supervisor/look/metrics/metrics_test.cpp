@@ -63,13 +63,21 @@ TEST(Metrics, RingsAndReadersHaveTheirCounts) {
 TEST(Metrics, TheLightSaysWhoKnowsItsTimesAndWhatTheOutputMissed) {
   auto look = look_at(10);
   EXPECT_THAT(metrics_text(look), Not(HasSubstr("handcast_light"))) << "none came";
-  look.figures->light = LightFigures{"window system", 7, 5};
-  look.figures->streams["projection.frames"].wanted_hz = 60;
+  look.figures->lights["projector"] = {"window system", 7, 5};
+  look.figures->lights["projector2"] = {"kernel", 9, 1};
   const auto text = metrics_text(look);
-  EXPECT_THAT(text, HasSubstr(R"(handcast_light_times_info{by="window system"} 1)"));
-  EXPECT_THAT(text, HasSubstr("handcast_light_missed_refreshes_total 7"));
-  EXPECT_THAT(text, HasSubstr("handcast_light_doubled_frames_total 5"));
-  EXPECT_THAT(text, HasSubstr("handcast_light_wanted_hertz 60"));
+  EXPECT_THAT(text,
+              HasSubstr(R"(handcast_light_times_info{service="projector",by="window system"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(handcast_light_missed_refreshes_total{service="projector"} 7)"));
+  EXPECT_THAT(text, HasSubstr(R"(handcast_light_missed_refreshes_total{service="projector2"} 9)"));
+  EXPECT_THAT(text, HasSubstr(R"(handcast_light_doubled_frames_total{service="projector"} 5)"));
+}
+
+TEST(Metrics, ARingHasTheRateThatTheRigFileAsksFor) {
+  auto look = look_at(10);
+  look.figures->streams["projection.frames"].wanted_hz = 60;
+  EXPECT_THAT(metrics_text(look),
+              HasSubstr(R"(handcast_ring_wanted_hertz{ring="projection.frames"} 60)"));
 }
 
 TEST(Metrics, LostImagesAreCountedByReason) {

@@ -152,12 +152,17 @@ TEST(Latency, TheLightHasItsSourceAndItsMissedRefreshes) {
     auto lit = mark(Stage::light, i * 30, i * 30 + 1);
     lit.detail = msg::detail_of({msg::LightSource::kernel, i == 2 ? 3u : 1u});
     history.add("projector", frame(static_cast<std::uint64_t>(i), 0, {lit}), 0);
+    lit.detail = msg::detail_of({msg::LightSource::window, 1});
+    history.add("projector2", frame(static_cast<std::uint64_t>(i), 0, {lit}), 0);
   }
   const auto table = table_of(history);
-  EXPECT_THAT(print_latency(table), HasSubstr("on the surface, by the kernel."));
-  EXPECT_THAT(print_latency(table), HasSubstr("light: 2 refreshes without a new frame, 1 frames"));
-  EXPECT_EQ(to_json(table)["light"]["times_by"], "kernel");
-  EXPECT_EQ(to_json(table)["light"]["missed_refreshes"], 2);
+  EXPECT_THAT(print_latency(table),
+              HasSubstr("light of projector: 2 refreshes without a new frame, 1 frames"));
+  EXPECT_THAT(print_latency(table), HasSubstr("times by the kernel\n"));
+  const auto lights = to_json(table)["light"];
+  EXPECT_EQ(lights["projector"]["times_by"], "kernel");
+  EXPECT_EQ(lights["projector"]["missed_refreshes"], 2);
+  EXPECT_EQ(lights["projector2"]["missed_refreshes"], 0);
 }
 
 TEST(Latency, OfNothingIsAnEmptyPage) {
