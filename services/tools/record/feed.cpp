@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "services/recording/streams.hpp"
+
 namespace handcast::record {
 
 void MessageQueue::push(Queued message) {
@@ -124,14 +126,13 @@ std::size_t bytes_of(const AnySample& sample) {
 
 Result<std::unique_ptr<Feed>> open_feed(const std::string& rig, const std::string& name,
                                         const FeedSettings& settings) {
-  if (name == "camera.frames" || name == "camera2.frames")
-    return open_as<msg::CameraFrame>(rig, name, settings);
-  if (name == "pose.hands") return open_as<msg::HandPoses>(rig, name, settings);
-  if (name == "landmarks.hands" || name == "landmarks2.hands")
-    return open_as<msg::Landmarks>(rig, name, settings);
-  if (name == "projection.frames" || name == "projection2.frames")
-    return open_as<msg::Projection>(rig, name, settings);
-  if (name.starts_with("marks.")) return open_as<msg::StageMarks>(rig, name, settings);
+  using recording::type_of;
+  const auto* type = recording::type_of_stream(name);
+  if (type == &type_of<msg::CameraFrame>()) return open_as<msg::CameraFrame>(rig, name, settings);
+  if (type == &type_of<msg::HandPoses>()) return open_as<msg::HandPoses>(rig, name, settings);
+  if (type == &type_of<msg::Landmarks>()) return open_as<msg::Landmarks>(rig, name, settings);
+  if (type == &type_of<msg::Projection>()) return open_as<msg::Projection>(rig, name, settings);
+  if (type == &type_of<msg::StageMarks>()) return open_as<msg::StageMarks>(rig, name, settings);
   return fail(Errc::bad_config, fmt::format("the messages of ring '{}' are unknown", name));
 }
 
