@@ -116,7 +116,7 @@ void NightWatch::track(const std::string& stream) {
           ? track_poses(std::move(*ring), [this](const auto& poses) { tally_.add(poses); })
       : stream == "camera.frames"       ? track_images(std::move(*ring))
       : stream.starts_with("landmarks") ? track_landmarks(std::move(*ring))
-      : stream == "marks.projector"
+      : stream.starts_with("marks.projector")
           ? track_marks(std::move(*ring), [this](const auto& marks) { tally_.add(marks); })
           : track_marks(std::move(*ring), {});
   if (opened)

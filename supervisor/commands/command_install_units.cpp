@@ -97,10 +97,10 @@ int print_template(const std::string& program) {
 }
 
 bool wants_real_time(const config::Rig& rig) {
-  const auto wants = [&](const char* service) {
-    return config::process_of(rig, service).priority > 0;
-  };
-  return wants("camera") || wants("pose") || wants("landmarks") || wants("projector");
+  const auto wants = [&](const std::string& name) { return process_of(rig, name).priority > 0; };
+  for (const std::string service : {"camera", "pose", "landmarks", "projector"})
+    if (wants(service) || wants(service + "2")) return true;
+  return false;
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from pages.report.kinds import is_number
 
-DATA_FLOW = ("camera", "pose", "landmarks", "projector", "observer")
+DATA_FLOW = ("camera", "camera2", "pose", "landmarks", "landmarks2", "projector", "projector2", "observer")
 ENOUGH = 0.9  # share of a requested rate that a computer must hold
 
 # The stages of ipc/msg/stage_mark.hpp in two groups, in their order.
@@ -53,7 +53,7 @@ def services_of(live):
 def too_slow(live):
     """The least share of a rate that was held, if the computer was too slow for it; else None."""
     shares = [Service("", "", live.number("rates", name, "wanted_hz"), live.number("rates", name, "held_hz"), "").share
-              for name in ("camera", "projector") if live.value("services", name, "is_held_to_its_rate") is not False]
+              for name in ("camera", "camera2", "projector", "projector2") if live.value("services", name, "is_held_to_its_rate") is not False]
     least = min((share for share in shares if share is not None), default=1)
     return least if least < ENOUGH else None
 

@@ -4,23 +4,31 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <set>
+
 #include "ipc/base/join.hpp"
 #include "ipc/base/program.hpp"
 #include "services/tools/devices/ask.hpp"
 
 namespace handcast::doctor {
 
+/// That of "camera2" is handcast-camera.
+static std::string program_of(const std::string& service) {
+  return program_folder() / ("handcast-" + service.substr(0, service.find('2')));
+}
+
 std::string try_in_its_program(const std::string& service, int priority) {
   const auto answer = devices::ask(
-      {program_folder() / ("handcast-" + service), "--try-priority", fmt::to_string(priority)},
-      STDOUT_FILENO);
+      {program_of(service), "--try-priority", fmt::to_string(priority)}, STDOUT_FILENO);
   if (!answer || answer->exit_code != 0) return "its program does not start";
   return answer->text.substr(0, answer->text.find('\n'));
 }
 
 Finding examine_real_time(const config::Rig& rig, const TryPriority& may) {
-  std::vector<std::string> permitted, denied, programs;
-  for (const auto* service : {"camera", "pose", "landmarks", "projector"}) {
+  std::vector<std::string> permitted, denied;
+  std::set<std::string> programs;
+  for (const auto* service :
+       {"camera", "camera2", "pose", "landmarks", "landmarks2", "projector", "projector2"}) {
     const int priority = config::process_of(rig, service).priority;
     if (priority == 0) continue;
     const auto why = may(service, priority);
@@ -28,7 +36,7 @@ Finding examine_real_time(const config::Rig& rig, const TryPriority& may) {
       permitted.push_back(fmt::format("{} {}", service, priority));
     } else {
       denied.push_back(fmt::format("{} {} ({})", service, priority, why));
-      programs.push_back(program_folder() / (std::string("handcast-") + service));
+      programs.insert(program_of(service));
     }
   }
   if (permitted.empty() && denied.empty())

@@ -70,7 +70,9 @@ TEST(RealTime, IsTriedForEachServiceThatWantsIt) {
   EXPECT_THAT(denied.sentence, Not(HasSubstr("projector")));
   EXPECT_NE(denied.remedy, "");
   rig.camera.process.priority = 0;
+  rig.projector2.process.priority = 20;
   EXPECT_EQ(examine_real_time(rig, may).grade, Grade::good);
+  EXPECT_THAT(examine_real_time(rig, may).sentence, HasSubstr("projector 30, projector2 20"));
 }
 
 TEST_F(Computer, WhatWouldBlankLockOrSuspendIsNamedForAWindow) {
