@@ -8,7 +8,7 @@ import pathlib
 import re
 import statistics
 
-SHOW_LINES = 67_940
+SHOW_LINES = 68_120
 SHOW_FILES = 768
 MEDIAN_LINES = 64  # of a source, at least: a file is a subject, not a function. The aim is 70.
 FOLDED_LINES = 300  # a header with one user is part of it, unless the file becomes longer than this

@@ -67,6 +67,15 @@ Result<msg::LiveSettings> LiveBoard::now() const {
   return view_->newest;
 }
 
+std::string why_dark(const Light& light) {
+  if (light.blackout) return "light.blackout is on";
+  return light.master > 0 ? "" : "light.master is 0";
+}
+
+Result<Rig> LiveBoard::rig_now() const {
+  return now().and_then([&](const auto& last) { return with_live(filed_, last.values.view()); });
+}
+
 Result<std::uint64_t> LiveBoard::amend(
     const std::function<Result<void>(msg::LiveSettings&)>& change) const {
   auto ring = again();

@@ -21,6 +21,9 @@ struct Transition {
   double seconds = -1;
 };
 
+/// Why the light is off, as "light.blackout is on"; "" if it is not.
+std::string why_dark(const Light& light);
+
 /// The live settings of a rig that is up, for programs that change them. Each change locks the
 /// ring, reads the newest values and publishes the new ones, so that several programs can change
 /// settings at the same time, and none needs the supervisor once it has the ring. One thread.
@@ -36,8 +39,11 @@ class LiveBoard {
 
   /// The rig as its file has it.
   const Rig& filed() const { return filed_; }
-  /// The newest settings.
+  /// The newest settings, and the rig with them.
+  /// @{
   Result<msg::LiveSettings> now() const;
+  Result<Rig> rig_now() const;
+  /// @}
 
   /// Changes settings: see changed_values(). `source`: who asks. Returns the number of the change
   /// (header.frame_id). Errors: bad_config, unavailable (another program holds the ring for more

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/measured.hpp"
+#include "config/settings/file_kind.hpp"
 #include "config/settings/load.hpp"
 #include "config/settings/settings.hpp"
 #include "ipc/base/quote.hpp"
@@ -135,7 +136,10 @@ Result<std::string> changed_values(const Rig& filed, std::string_view values,
   if (!rig) return tl::make_unexpected(rig.error());
   if (const auto possible = check_possible(*rig); !possible)
     return tl::make_unexpected(possible.error());
-  return differences(filed, *rig);
+  auto changed = differences(filed, *rig);
+  if (auto why = why_unreadable(changed); !why.empty())
+    return fail(Errc::bad_config, std::move(why));
+  return changed;
 }
 
 Result<std::string> values_of_preset(const Rig& filed, const std::string& toml,
@@ -149,11 +153,13 @@ Result<std::string> values_of_preset(const Rig& filed, const std::string& toml,
 
 Result<void> change(msg::LiveSettings& settings, std::string_view values, std::string_view what,
                     std::string_view source, std::int64_t now_ns) {
-  if (values.size() >= settings.values.bytes.size())
+  constexpr std::size_t kForLight = 512;  // a blackout must always be possible
+  const auto room = settings.values.bytes.size() - (what.starts_with("light.") ? 0 : kForLight);
+  if (values.size() >= room)
     return fail(Errc::bad_config,
                 fmt::format("more than {} bytes of changed settings; take some back, or write them "
                             "into the rig file",
-                            settings.values.bytes.size() - 1));
+                            room - 1));
   const bool goes_on =
       settings.source.view() == source && paths_in(settings.change.view()) == paths_in(what) &&
       now_ns - settings.header.origin_ns < kOneChange_ns && !settings.undo.view().empty();

@@ -51,6 +51,14 @@ std::size_t first_not_utf8(std::string_view text) {
 
 }  // namespace
 
+std::string why_unreadable(std::string_view toml) {
+  const auto at = first_not_utf8(toml);
+  if (at == toml.npos) return {};
+  const auto begin = toml.rfind('\n', at) + 1;  // 0 in the first line
+  return fmt::format("{}: is not UTF-8; write it in UTF-8, and rename a folder whose name is not",
+                     quote(toml.substr(begin, toml.find('\n', at) - begin)));
+}
+
 std::string other_kind_of_file(std::string_view text, std::string_view file) {
   const bool has_mark = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
   const bool is_wide =

@@ -5,6 +5,10 @@
 
 namespace handcast::config {
 
+/// Why printed settings could not be read again: a text that a person has given is not UTF-8. A
+/// sentence with the first such line; "" if all are.
+std::string why_unreadable(std::string_view toml);
+
 /// Why a text cannot be TOML at all, before it is parsed: it is in another encoding (UTF-16,
 /// Latin-1) or of another kind (a picture, JSON, a web page). "FILE:LINE:COLUMN: …" with the
 /// remedy; "" if it may be TOML.

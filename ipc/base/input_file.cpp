@@ -19,8 +19,11 @@ const char* kind_of(mode_t mode) {
   return "a device";
 }
 
+/// What a person need not mend is not for good: trying again may help.
 tl::unexpected<Error> unreadable(const std::filesystem::path& file, int error) {
-  return fail(Errc::bad_config,
+  const bool may_pass = error == EIO || error == ESTALE || error == EMFILE || error == ENFILE ||
+                        error == ENOMEM || error == ETIMEDOUT;
+  return fail(may_pass ? Errc::unavailable : Errc::bad_config,
               fmt::format("{}: cannot be read: {}", file.string(), std::strerror(error)));
 }
 

@@ -189,4 +189,12 @@ Result<void> check_writable(const fs::path& file) {
               fmt::format("{}: cannot be written: {}", file.string(), inherited::reason_of(errno)));
 }
 
+Result<void> check_result_file(const fs::path& file) {
+  std::error_code unknown;
+  if (file.extension() == ".toml" && fs::exists(file, unknown))
+    return fail(Errc::bad_config,
+                file.string() + ": is a TOML file, and would be replaced; name another file");
+  return check_writable(file);
+}
+
 }  // namespace handcast

@@ -24,5 +24,8 @@ Result<void> write_whole(const std::filesystem::path& file, std::string_view byt
 /// Checks before long work whether write_whole() is likely to succeed. Errors: bad_config (it is
 /// not).
 Result<void> check_writable(const std::filesystem::path& file);
+/// The same of a result, which must not replace a rig file that was named by mistake. Errors:
+/// bad_config (also: it is a TOML file that exists).
+Result<void> check_result_file(const std::filesystem::path& file);
 
 }  // namespace handcast

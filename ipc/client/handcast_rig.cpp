@@ -46,7 +46,9 @@ struct Outbox {
     presence.emplace(ring->rig, std::string(stream), ring->segment.created_ns(),
                      handcast::client::PresenceTimes{.silence_ns = kAskEvery_ns});
     auto attached = handcast::ipc::Writer<T>::attach(std::move(ring->segment));
-    if (!attached) return handcast::fail_in("another program sends already", attached.error());
+    if (!attached)
+      return handcast::fail_in("another program sends or draws there already; end it first",
+                               attached.error());
     writer.emplace(std::move(*attached));
     return {};
   }

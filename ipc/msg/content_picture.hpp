@@ -48,7 +48,8 @@ struct MipLayout {
   /// @{
   constexpr int stride() const { return width + 2; }
   constexpr int rows() const {
-    return first_row(levels() - 1) + (padded_height() >> (levels() - 1)) + 1;
+    const int border = smooth ? 1 : 2;  // the nearest texel of the lower edge is read with the next
+    return first_row(levels() - 1) + (padded_height() >> (levels() - 1)) + border;
   }
   /// @}
 };

@@ -57,17 +57,19 @@ std::array<double, kBendsOfFinger> snapped_rad(const Latest& latest, int finger)
 }  // namespace
 
 AbruptChange Abruptness::add(const HandGlimpse& glimpse) {
-  constexpr std::int64_t kLongest_ns = 100'000'000;
+  constexpr std::int64_t kShort_ns = 100'000'000, kLongest_ns = 400'000'000;
   HandGlimpse now = glimpse;
   for (int finger = 0; finger < kFingers; ++finger)
     for (int b = 0; b < kBendsOfFinger; ++b) now.flexions_rad[finger][b] -= snapped_rad_[finger][b];
   AbruptChange change;
   change.landmarks.fill(Abrupt::tracker);
-  if (before_ && now.time_ns - before_->time_ns < kLongest_ns) {
-    const auto step_ns = std::max<std::int64_t>(1, last_->time_ns - before_->time_ns);
-    const Latest latest{
-        *before_, *last_, now,
-        static_cast<double>(now.time_ns - last_->time_ns) / static_cast<double>(step_ns)};
+  const auto span_ns = before_ ? now.time_ns - before_->time_ns : kLongest_ns;
+  const auto step_ns = before_ ? std::max<std::int64_t>(1, last_->time_ns - before_->time_ns) : 1;
+  const double steps =
+      last_ ? static_cast<double>(now.time_ns - last_->time_ns) / static_cast<double>(step_ns) : 0;
+  const bool is_slow_camera = span_ns < kLongest_ns && std::abs(std::log2(steps)) < 1.3;
+  if (span_ns < kShort_ns || is_slow_camera) {
+    const Latest latest{*before_, *last_, now, steps};
     for (int i = 0; i < kLandmarks; ++i)
       change.landmarks[i] = more_abrupt(change_px(&HandGlimpse::tracker_px, latest, i),
                                         change_px(&HandGlimpse::detector_px, latest, i));

@@ -32,8 +32,8 @@ struct HandGlimpse {
 /// moved. One thread.
 class Abruptness {
  public:
-  /// Adds an image. Until three of them were close together, the tracker has just found the hand,
-  /// so that all changes are its.
+  /// Adds an image. Until three of them were close together (0.1 s, or regular and 0.4 s), the
+  /// tracker has just found the hand, so that all changes are its.
   AbruptChange add(const HandGlimpse& glimpse);
   /// Forgets the images.
   void forget() { *this = Abruptness(); }

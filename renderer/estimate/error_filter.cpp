@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ipc/base/statistics.hpp"
-
 namespace handcast::renderer {
 namespace {
 
@@ -223,10 +221,17 @@ double ErrorFilter::deviation(int landmark) const {
   return std::sqrt(2 * residual_.segment<2>(at).squaredNorm() / likely);
 }
 
+/// False for a landmark outside of the image, say.
+bool ErrorFilter::is_seen(int landmark) const { return noise_(2 * landmark) < square(kNotSeen_px); }
+
 bool ErrorFilter::is_contradicted() const {
   std::array<double, kLandmarks> off;
-  for (int landmark = 0; landmark < kLandmarks; ++landmark) off[landmark] = deviation(landmark);
-  return median(off) > kContradicted;
+  auto end = off.begin();
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    if (is_seen(landmark)) *end++ = deviation(landmark);
+  const auto middle = off.begin() + (end - off.begin()) / 2;
+  std::nth_element(off.begin(), middle, end);
+  return end != off.begin() && *middle > kContradicted;
 }
 
 /// A finger that the tracker has moved abruptly, and that is far from three of its landmarks or
@@ -297,7 +302,14 @@ void ErrorFilter::end_error(const ErrorPrior& prior) {
 /// Landmarks that are further off than is likely count less: those that the detector has moved
 /// abruptly may have a new error that lasts, the others that of one image.
 void ErrorFilter::doubt_landmarks(const AbruptLandmarks& abrupt) {
-  const double mean_variance = expected_.trace() / kNumbers;
+  double variances = 0;
+  int numbers = 0;
+  for (int landmark = 0; landmark < kLandmarks; ++landmark)
+    if (is_seen(landmark)) {
+      variances += expected_.diagonal().segment<2>(2 * landmark).sum();
+      numbers += 2;
+    }
+  const double mean_variance = variances / std::max(numbers, 1);
   for (int landmark = 0; landmark < kLandmarks; ++landmark) {
     const double off = deviation(landmark);
     if (!(off > kHuber)) continue;

@@ -57,6 +57,7 @@ class ErrorFilter {
   void add_slopes(int landmark, const glm::dmat3x2& px_per_m, const ArticulatedHand& hand);
   void expect(const calib::CameraModel& camera, const HandJoints& reported,
               const msg::HandLandmarks& seen);
+  bool is_seen(int landmark) const;
   double deviation(int landmark) const;
   bool is_contradicted() const;
   bool free_fingers(const AbruptLandmarks& abrupt);

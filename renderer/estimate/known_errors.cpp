@@ -33,7 +33,7 @@ bool KnownErrors::add(const calib::CameraModel& camera, const Sighting& sighting
   } else if (!recall(camera, unchanged)) {
     if (!is_doubtful_ || next_ != 0) return false;
     now_.errors.forget_place();
-    now_.explain(camera, unchanged);
+    if (!now_.explain(camera, unchanged)) return false;
   }
   is_doubtful_ = false;
   next_ = 0;

@@ -221,7 +221,8 @@ void HandPipeline::skin(HandFrame& frame, float shading, bool is_shared) {
   auto& shape = states_.shape;
   frame.drawn = frame.corrected.estimated.value_or(frame.corrected.posed);
   frame.from_px = to_projector(frame.drawn.landmarks, frame.drawn);
-  frame.to_px = shape.fingers.moved(to_projector(frame.registered.landmarks, frame.drawn));
+  frame.to_px = to_projector(frame.registered.landmarks, frame.drawn);
+  if (settings_.correct.outline) frame.to_px = shape.fingers.moved(frame.to_px);
   frame.skinned = shape.surface.pose(frame.drawn.pose, settings_.skin, calibration_, shading,
                                      frame.presence, is_shared);
 }

@@ -139,7 +139,9 @@ std::span<const FrameHand> Pipeline::track(std::int64_t now_ns, std::int64_t tar
 Pipeline::Placed Pipeline::place(std::int64_t now_ns, std::int64_t target_ns,
                                  const TimedImage& camera, bool is_drawn) {
   stages_.start();
-  const bool has_image = camera && !is_early(now_ns, camera.origin_ns);
+  constexpr std::int64_t kLongest_ns = 250'000'000;  // then the camera is away
+  const bool has_image =
+      camera && !is_early(now_ns, camera.origin_ns) && now_ns - camera.origin_ns < kLongest_ns;
   const bool is_seen = has_image && (is_drawn ? settings_.fill.method != config::FillMethod::none
                                               : late_.on() && late_.is_new(camera));
   if (is_drawn) {

@@ -38,12 +38,26 @@ void Dimmer::out(std::int64_t target_ns) {
   last_ns_ = target_ns;
 }
 
+std::int64_t Rhythm::late_ns(std::int64_t target_ns, std::int64_t data_ns) {
+  constexpr std::int64_t kPause_ns = 400'000'000, kMemory = 4;  // data
+  const auto interval_ns = data_ns - newest_ns_;
+  if (newest_ns_ > 0 && interval_ns > 0 && interval_ns < kPause_ns) {
+    interval_ns_ += (interval_ns - interval_ns_) / kMemory;
+    age_ns_ += (target_ns - data_ns - age_ns_) / kMemory;
+  }
+  newest_ns_ = data_ns;
+  return std::min(age_ns_ + 5 * interval_ns_ / 2, kPause_ns);
+}
+
 float Presence::at(std::int64_t target_ns, std::int64_t sampled_ns,
                    std::optional<std::int64_t> seen_ns) {
-  float wanted = faded(target_ns - sampled_ns, kHeld_ns);
+  const auto held_ns = std::max(kHeld_ns, tracker_.late_ns(target_ns, sampled_ns));
+  float wanted = faded(target_ns - sampled_ns, held_ns);
   if (seen_ns)
-    wanted = std::max(wanted, std::min(faded(target_ns - sampled_ns, kCarried_ns),
-                                       faded(target_ns - *seen_ns, kSeen_ns)));
+    wanted = std::max(wanted,
+                      std::min(faded(target_ns - sampled_ns, kCarried_ns),
+                               faded(target_ns - *seen_ns,
+                                     std::max(kSeen_ns, detector_.late_ns(target_ns, *seen_ns)))));
   return light_.towards(target_ns, wanted);
 }
 

@@ -19,9 +19,21 @@ class Dimmer {
   std::optional<std::int64_t> last_ns_;  ///< empty before the first frame
 };
 
+/// How old the data of a sensor gets before the next ones come.
+class Rhythm {
+ public:
+  /// The age that says that the next ones are late: 2.5 usual intervals after the usual age, at
+  /// most 0.4 s. `data_ns`: the time of the newest.
+  std::int64_t late_ns(std::int64_t target_ns, std::int64_t data_ns);
+
+ private:
+  std::int64_t newest_ns_ = 0, interval_ns_ = 0, age_ns_ = 0;
+};
+
 /// The share of its light that a hand gets, by the age of its sensor data. While the tracker is
 /// silent, the light fades between 100 and 200 ms after the last sample. Landmarks that are at most
-/// 80 ms old keep it, and it fades between 800 and 900 ms. It returns in 30 ms.
+/// 80 ms old keep it, and it fades between 800 and 900 ms. A slow sensor's data may be older
+/// (Rhythm). It returns in 30 ms.
 class Presence {
  public:
   /// The light is out after a silence of the tracker of this length, with or without landmarks.
@@ -34,6 +46,7 @@ class Presence {
   void no_hand(std::int64_t target_ns);
 
  private:
+  Rhythm tracker_, detector_;
   Dimmer light_;
 };
 

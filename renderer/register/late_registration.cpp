@@ -10,7 +10,8 @@
 namespace handcast::renderer {
 namespace {
 
-constexpr std::int64_t kKept_ns = 30'000'000;   ///< greatest age of an anchor
+/// Greatest age of an anchor: usually, and for a camera with 30 images a second.
+constexpr std::int64_t kKept_ns = 30'000'000, kLongestKept_ns = 60'000'000;
 constexpr std::int64_t kFresh_ns = 20'000'000;  ///< longest time from an exposure to the photons
 // Noise of registration: the displacement of a hand that moved as predicted.
 constexpr float kHandNoise_px = 0.22f;   ///< of the mean of all landmarks
@@ -62,21 +63,26 @@ LateRegistration::LateRegistration(const config::Registration& settings,
       calibration_(calibration),
       registration_(static_cast<float>(settings.limit_px)),
       outlines_(on() ? kOutlines : 0),
+      blend_{filter.blend_ms, filter.blend_px},
       blends_{JumpBlend(filter.blend_ms, filter.blend_px),
               JumpBlend(filter.blend_ms, filter.blend_px)} {}
 
 void LateRegistration::adjust(const config::Registration& settings, const config::Filter& filter) {
+  if (settings.limit_px != settings_.limit_px)
+    registration_ = Registration(static_cast<float>(settings.limit_px));
   settings_ = settings;
-  registration_ = Registration(static_cast<float>(settings.limit_px));
   if (on()) outlines_.resize(kOutlines);
-  blends_.fill(JumpBlend(filter.blend_ms, filter.blend_px));
+  if (const std::pair blend{filter.blend_ms, filter.blend_px};
+      std::exchange(blend_, blend) != blend)
+    blends_.fill(JumpBlend(filter.blend_ms, filter.blend_px));
 }
 
 const LateRegistration::Outline* LateRegistration::anchor_before(std::int64_t time_ns) const {
+  const auto kept_ns = std::clamp(3 * interval_ns_ / 2, kKept_ns, kLongestKept_ns);
   const Outline* newest = nullptr;
   for (const Outline& outline : outlines_)
     if (outline.time_ns > 0 && outline.time_ns <= time_ns &&
-        outline.time_ns > newest_ns_ - kKept_ns && (!newest || outline.time_ns > newest->time_ns))
+        outline.time_ns > newest_ns_ - kept_ns && (!newest || outline.time_ns > newest->time_ns))
       newest = &outline;
   return newest;
 }
@@ -95,6 +101,7 @@ std::optional<HandMotion> LateRegistration::motion_of(const Hand& hand, std::int
 
 void LateRegistration::look(const Silhouette& newest, std::span<const Hand> hands) {
   if (!on() || newest.origin_ns <= newest_ns_) return;
+  interval_ns_ = newest.origin_ns - newest_ns_;
   newest_ns_ = newest.origin_ns;
   for (std::size_t h = 0; h < hands.size(); ++h) find_hand(newest, hands, h);
   Outline& outline = outlines_[next_outline_++ % kOutlines];

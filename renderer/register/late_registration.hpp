@@ -89,11 +89,12 @@ class LateRegistration {
   config::Registration settings_;
   calib::Calibration calibration_;
   Registration registration_;
-  std::int64_t newest_ns_ = 0;
-  std::vector<Outline> outlines_;  ///< ring buffer
+  std::int64_t newest_ns_ = 0, interval_ns_ = 0;  ///< of the images
+  std::vector<Outline> outlines_;                 ///< ring buffer
   std::size_t next_outline_ = 0;
   std::array<Seen, msg::kMaxHands> seen_{};  ///< by side
   std::array<Registered, msg::kMaxHands> last_{};
+  std::pair<double, double> blend_;  ///< ms and px of the blends
   std::array<JumpBlend, msg::kMaxHands> blends_;
 };
 

@@ -12,7 +12,7 @@
 namespace handcast::service {
 namespace {
 
-constexpr std::int64_t kComplainEvery_ns = 1'000'000'000;
+constexpr std::int64_t kFirstPause_ns = 1'000'000'000, kLongestPause_ns = 3600 * kFirstPause_ns;
 
 bool worth_going_on(Errc code) { return code == Errc::timeout || code == Errc::bad_data; }
 
@@ -105,9 +105,13 @@ void Context::tolerate(const Error& error) {
   if (!worth_going_on(error.code)) give_up(error);
   ++complaints_;
   const auto now = now_ns();
-  if (now - last_complaint_ns_ < kComplainEvery_ns) return;
+  if (now < next_complaint_ns_) return;
+  const bool is_same = std::exchange(complaint_, error.what) == error.what &&
+                       now < next_complaint_ns_ + complaint_pause_ns_;
+  complaint_pause_ns_ =
+      is_same ? std::min(2 * complaint_pause_ns_, kLongestPause_ns) : kFirstPause_ns;
+  next_complaint_ns_ = now + complaint_pause_ns_;
   log::warning("{} ({} so far)", error.what, complaints_);
-  last_complaint_ns_ = now;
 }
 
 void Context::mark(const msg::Header& frame, std::span<const msg::StageMark> stages,

@@ -91,8 +91,9 @@ class Context {
   /// True if the daemon was asked to stop, but may end its work before (daemon::Stop::for_good):
   /// no process replaces it.
   bool may_finish() const;
-  /// Handles an error of one turn of the main loop. Timeouts and bad data are counted and logged at
-  /// most once per second; all other errors end the process, and the supervisor reacts.
+  /// Handles an error of one turn of the main loop. Timeouts and bad data are counted and logged,
+  /// the same sentence again after 1, 2, 4 s and so on, up to an hour; all other errors end the
+  /// process, and the supervisor reacts.
   void tolerate(const Error& error);
   /// Publishes the times of the stages of one frame, for traces, reports and `handcast status`.
   /// `made_from`: the inputs of a projector frame.
@@ -118,7 +119,8 @@ class Context {
   Deadline writers_until_ = Deadline::now();  ///< how long a writer waits for the one before it
   std::map<std::string, ipc::Segment, std::less<>> mapped_;  ///< prepared by stand_by()
   std::unique_ptr<ipc::Writer<msg::StageMarks>> marks_;
-  std::int64_t last_complaint_ns_ = 0;
+  std::string complaint_;  ///< the last one that was logged
+  std::int64_t next_complaint_ns_ = 0, complaint_pause_ns_ = 0;
   std::uint64_t complaints_ = 0;
 };
 

@@ -53,11 +53,13 @@ Result<std::unique_ptr<LiveSettings>> LiveSettings::follow(const config::Rig& fi
   live->thread_ = std::jthread([&fresh = live->fresh_, filed,
                                 reader = std::move(*reader)](const std::stop_token& stop) mutable {
     lower_priority();
+    std::string told;  // what is wrong with the ring for good
     while (!stop.stop_requested()) {
       const auto last = reader.latest(Deadline::in(200ms));
       if (!last) {
-        if (last.error().code != Errc::timeout)
-          log::warning("live settings: {}", last.error().what);
+        if (last.error().code == Errc::timeout) continue;
+        if (std::exchange(told, last.error().what) != told) log::warning("live settings: {}", told);
+        sleep_until_ns(now_ns() + to_ns(200ms));
         continue;
       }
       if (auto rig = rig_of(filed, **last))

@@ -21,11 +21,10 @@ std::optional<Lights::Change> Lights::look() {
   if (!now || seen_ == now->header.frame_id) return std::nullopt;
   const bool is_first = !seen_;
   seen_ = now->header.frame_id;
-  const auto rig = config::with_live(board_.filed(), now->values.view());
-  if (rig) {
+  if (const auto rig = board_.rig_now()) {
     const auto& light = rig->light;
     const bool has_light = light.lamp == config::Lamp::on || light.lamp == config::Lamp::unchanged;
-    is_dark_ = light.blackout || light.master <= 0 || (has_lamp() && !has_light);
+    is_dark_ = !config::why_dark(light).empty() || (has_lamp() && !has_light);
   }
   if (is_first) return std::nullopt;
   return Change{std::string(now->source.view()), std::string(now->change.view())};

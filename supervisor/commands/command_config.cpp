@@ -16,6 +16,7 @@
 
 #include "config/measured.hpp"
 #include "config/rig.hpp"
+#include "config/settings/file_kind.hpp"
 #include "ipc/base/clock.hpp"
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/join.hpp"
@@ -194,6 +195,8 @@ int run_config(const Arguments& arguments) {
       file.empty() ? config::parse_rig("", std::filesystem::current_path() / "defaults", settings)
                    : config::load_rig(file, settings);
   if (!rig) return complain(rig.error());
+  if (auto why = config::why_unreadable(config::print_rig(*rig)); !why.empty())
+    return complain({Errc::bad_config, std::move(why)});
   if (checks) return check(*rig, file, settings);
   if (!file.empty()) print_measured(file);
   fmt::print("{}", config::print_rig(*rig));

@@ -62,8 +62,18 @@ std::vector<std::string> changes_of(const Wish& wish) {
   return changes;
 }
 
+/// The changes that show again what was there.
+std::vector<std::string> changes_back(const Wish& wish, const config::Content& before) {
+  std::vector<std::string> changes;
+  for (const auto hand : kHands)
+    if (wish.hand == "both" || wish.hand == hand)
+      changes.push_back(
+          fmt::format("content.{}={}", hand, hand == "left" ? before.left : before.right));
+  return changes;
+}
+
 /// Errors: bad_config (it makes no sense), unavailable. Returns the number of the change.
-Result<std::uint64_t> send(const Wish& wish) {
+Result<std::uint64_t> send(const Wish& wish, config::LiveBoard& board) {
   config::Transition transition{wish.transition, wish.transition_s};
   if (!wish.transition.empty()) {
     std::error_code gone;
@@ -71,9 +81,7 @@ Result<std::uint64_t> send(const Wish& wish) {
     if (!resolved) return fail_in("--transition", resolved.error());
     transition.name = std::move(*resolved);
   }
-  auto board = config::LiveBoard::open(wish.rig);
-  if (!board) return tl::make_unexpected(board.error());
-  return board->set(changes_of(wish), "command line", transition);
+  return board.set(changes_of(wish), "command line", transition);
 }
 
 void print(const msg::ContentState& state, bool as_json) {
@@ -127,10 +135,19 @@ int show(const std::string& rig, bool as_json) {
 int change(const Wish& wish) {
   auto states = client::open_stream<msg::ContentState>(wish.rig, "content.state");
   if (!states) return complain(states.error());
-  const auto change = send(wish);
+  auto board = config::LiveBoard::open(wish.rig);
+  if (!board) return complain(board.error());
+  const auto before = board->rig_now();
+  if (!before) return complain(before.error());
+  const auto change = send(wish, *board);
   if (!change) return complain(change.error());
   const auto answer = wait_for(*states, wish, *change);
-  return answer ? kExitDone : complain(answer.error());
+  if (answer) return kExitDone;
+  // What cannot be drawn must not be kept by `handcast save`.
+  if (const auto now = board->now(); now && now->header.frame_id == *change)
+    if (const auto back = board->set(changes_back(wish, before->content), "command line"); !back)
+      return complain(back.error());
+  return complain(answer.error());
 }
 
 /// `handcast content --try` is a program of its own, which needs no rig.

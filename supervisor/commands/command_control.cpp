@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "config/live/live_board.hpp"
 #include "ipc/base/join.hpp"
 #include "ipc/control/control_client.hpp"
 #include "supervisor/commands/choose_rig.hpp"
@@ -133,7 +134,14 @@ int run_status(const Arguments& arguments) {
       send(rig, {.verb = control::Verb::status, .service = {}, .backend = {}});
   if (exit_code != kExitDone) return exit_code;
   const auto& status = answer["status"];
-  fmt::print("{}", as_json ? status.dump(2) + "\n" : print_status(figures_in(status)));
+  if (as_json) return fmt::print("{}\n", status.dump(2)), kExitDone;
+  const auto figures = figures_in(status);
+  const auto now = config::LiveBoard::open(figures.rig).and_then([](const auto& board) {
+    return board.rig_now();
+  });
+  if (const auto why = now ? config::why_dark(now->light) : ""; !why.empty())
+    fmt::print("the light is off: {}\n\n", why);
+  fmt::print("{}", print_status(figures));
   return kExitDone;
 }
 

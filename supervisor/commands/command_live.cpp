@@ -80,9 +80,7 @@ struct Query {
 };
 
 Result<void> get(const LiveBoard& board, const Query& query) {
-  const auto settings = board.now();
-  if (!settings) return tl::make_unexpected(settings.error());
-  auto rig = config::with_live(board.filed(), settings->values.view());
+  auto rig = board.rig_now();
   if (!rig) return tl::make_unexpected(rig.error());
   auto filed = board.filed();
   const auto listing = config::list_settings(*rig), before = config::list_settings(filed);

@@ -19,6 +19,7 @@ int run_trace(const Arguments& arguments) {
   add_rig(line, name);
   if (const auto code = line.answered(arguments)) return *code;
   if (path.empty()) return line.refuse("-o FILE is needed");
+  if (const auto good = check_result_file(path); !good) return complain(good.error());
 
   const auto rig = choose_rig(name);
   if (!rig) return complain(rig.error());

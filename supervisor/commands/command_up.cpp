@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdlib>
 
@@ -116,6 +117,8 @@ int run_up(const Arguments& arguments) {
   line.add("--kept", order.kept, "");
   if (const auto code = line.answered(arguments)) return *code;
   log::never_wait_for_stderr();
+  // What the terminal left open is not for the services, and may have the number of a ring.
+  ::close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
   if (!order.kept) warn_of_surroundings();
   order.rig_file = std::filesystem::absolute(order.rig_file);
   if (!order.out.empty()) order.out = std::filesystem::absolute(order.out);

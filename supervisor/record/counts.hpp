@@ -36,7 +36,7 @@ class Histogram {
   static constexpr int kOctaves = 38;  ///< 1 ns to 275 s
 
   std::uint64_t count_ = 0;
-  std::array<std::uint32_t, kPerOctave * kOctaves> buckets_{};
+  std::array<std::uint64_t, kPerOctave * kOctaves> buckets_{};  ///< 946 Hz fill 32 bits in 52 days
 };
 
 /// The images of the camera that were lost in a run, by reason. See msg::FrameLosses.

@@ -8,6 +8,7 @@
 
 #include <cerrno>
 
+#include "config/settings/file_kind.hpp"
 #include "config/settings/frozen_file.hpp"
 #include "ipc/base/inherited.hpp"
 #include "supervisor/succession/adoption.hpp"
@@ -18,14 +19,18 @@ Result<config::Rig> load_rig_to_apply(const std::filesystem::path& rig_file,
                                       const std::vector<std::string>& settings) {
   auto rig = config::load_rig(rig_file, settings);
   if (!rig) return rig;
-  auto frozen = config::freeze(rig->calibration);
-  if (!frozen) return fail_in("calibration", frozen.error());
-  rig->calibration = std::move(*frozen);
+  for (auto* file : {&rig->calibration, &rig->projector2.calibration}) {
+    auto frozen = config::freeze(*file);
+    if (!frozen) return fail_in("calibration", frozen.error());
+    *file = std::move(*frozen);
+  }
   return rig;
 }
 
 Result<AppliedRig> make_applied(const config::Rig& rig) {
   auto toml = config::print_rig(rig);
+  if (auto why = config::why_unreadable(toml); !why.empty())
+    return fail(Errc::bad_config, std::move(why));
   UniqueFd file(memfd_create("handcast-rig", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   const bool written =
       file && ::write(file.get(), toml.data(), toml.size()) == static_cast<ssize_t>(toml.size());

@@ -49,6 +49,11 @@ Service::Look LiveRig::look_at(const Service& service, std::int64_t now) const {
   return look;
 }
 
+std::int64_t LiveRig::settled_by(std::int64_t now_ns) const {
+  constexpr double kGrace_s = 1;
+  return now_ns + seconds_to_ns(launch.stop_s + launch.ready_s + kGrace_s);
+}
+
 std::string LiveRig::text() const {
   config::Rig runs = config;
   for (const auto& service : services.all())

@@ -36,6 +36,8 @@ struct LiveRig {
   bool stops() const { return phase == Phase::stopping || phase == Phase::done; }
   /// The argument of Service::tick(). While the rig stops, no service counts as silent.
   Service::Look look_at(const Service& service, std::int64_t now_ns) const;
+  /// By when a service that is stopped and started now is ready, unless something is missing.
+  std::int64_t settled_by(std::int64_t now_ns) const;
   /// The rig as it runs, swapped back ends included, as TOML.
   std::string text() const;
   /// The present state, for reports.

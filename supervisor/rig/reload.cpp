@@ -17,9 +17,6 @@
 namespace handcast::supervisor {
 namespace {
 
-/// Added to the time limits of a service for stopping and becoming ready.
-constexpr double kGrace_s = 1;
-
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
@@ -110,7 +107,7 @@ void Reload::apply(std::int64_t now) {
     if (!service) {
       rig_->services.add(spec, place);
     } else if (contains(replaced_, spec.name)) {
-      begun_[spec.name] = patience_until(now);
+      begun_[spec.name] = rig_->settled_by(now);
       service->hand_over();
       service->update(spec);  // even if the replacement dies before it takes over
     } else {
@@ -127,10 +124,6 @@ bool Reload::waits_for(const std::string& service) const {
   return begun_.contains(service) || (!applied_ && contains(replaced_, service));
 }
 
-std::int64_t Reload::patience_until(std::int64_t now) const {
-  return now + seconds_to_ns(rig_->launch.stop_s + rig_->launch.ready_s + kGrace_s);
-}
-
 /// Starts the services whose needs have all settled.
 void Reload::begin_what_may(std::int64_t now) {
   const auto in_the_way = [this](const auto& need) {
@@ -140,7 +133,7 @@ void Reload::begin_what_may(std::int64_t now) {
     auto& service = *rig_->services.find(name);
     if (std::ranges::any_of(service.spec().needs, in_the_way)) continue;
     std::erase(waiting_, name);
-    begun_[name] = patience_until(now);
+    begun_[name] = rig_->settled_by(now);
     service.restart();
   }
 }

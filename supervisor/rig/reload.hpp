@@ -40,7 +40,6 @@ class Reload {
   void apply(std::int64_t now_ns);
   void begin_what_may(std::int64_t now_ns);
   void note_what_has_settled(std::int64_t now_ns);
-  std::int64_t patience_until(std::int64_t now_ns) const;
   nlohmann::json answer() const;
 
   LiveRig* rig_;

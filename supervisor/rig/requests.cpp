@@ -32,6 +32,7 @@ nlohmann::json success_of(const Service& service) {
 
 void Changes::restart(Service& service, ControlServer::Reply reply) {
   auto& pending = pending_[service.spec().name] = {std::move(reply)};
+  pending.until_ns = rig_.settled_by(now_ns());
   if (!service.works()) return service.restart();
   replace(service, service.spec().backend, pending);
 }
@@ -41,6 +42,7 @@ void Changes::swap(Service& service, const std::string& backend, ControlServer::
   if (const auto known = check_backend(rig_.catalogue, name, backend); !known)
     return reply(control::failure(known.error().what));
   auto& pending = pending_[name] = {std::move(reply), backend, service.spec().backend};
+  pending.until_ns = rig_.settled_by(now_ns());
   if (!service.works()) return give_backend(service, backend, true);
   replace(service, backend, pending);
 }
@@ -64,16 +66,21 @@ void Changes::replace(Service& service, const std::string& backend, Pending& pen
 
 void Changes::hand_over(Service& service, Pending& pending) {
   pending.is_replacing = false;
+  pending.until_ns = rig_.settled_by(now_ns());
   service.hand_over();
 }
 
-void Changes::tick() {
+void Changes::tick(std::int64_t now_ns) {
   for (auto next = pending_.begin(); next != pending_.end();) {
     const auto found = next++;
     auto& [name, pending] = *found;
-    if (!pending.is_replacing) continue;
     auto& service = *rig_.services.find(name);
-    if (service.replacement_is_prepared()) {
+    if (!pending.is_replacing) {
+      if (now_ns < pending.until_ns) continue;
+      const auto sentence = fmt::format("{} is not ready yet, and goes on trying: {}", name,
+                                        service.log().last_sentence());
+      pending_.extract(found).mapped().reply(control::failure(sentence));
+    } else if (service.replacement_is_prepared()) {
       hand_over(service, pending);
     } else if (!service.has_replacement()) {
       const auto what = pending.wanted.empty()
@@ -273,7 +280,7 @@ std::string Requests::why_not_reload() const {
 }
 
 void Requests::tick(std::int64_t now) {
-  changes_.tick();
+  changes_.tick(now);
   if (!reloading_ || !reloading_->reload.advance(now)) return;
   const auto done = std::move(reloading_);
   done->reply(done->reload.finish());

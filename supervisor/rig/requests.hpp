@@ -27,8 +27,9 @@ class Changes {
   void restart(Service& service, ControlServer::Reply reply);
   /// Restarts a service with another back end. Refuses one that the service does not have.
   void swap(Service& service, const std::string& backend, ControlServer::Reply reply);
-  /// Replaces the services whose replacements are prepared. Call it on every tick.
-  void tick();
+  /// Replaces the services whose replacements are prepared, and gives up waiting for those that do
+  /// not get ready, e.g. without their device: they go on trying. Call it on every tick.
+  void tick(std::int64_t now_ns);
 
   /// True if the service is being changed.
   bool contains(std::string_view service) const { return pending_.contains(service); }
@@ -52,6 +53,7 @@ class Changes {
     std::string wanted{}, before{};  ///< back ends; "" for a restart
     bool is_replacing = false;       ///< the worker goes on; its replacement is being prepared
     std::string reason{};            ///< why `wanted` did not start; "" if it has not failed
+    std::int64_t until_ns = 0;       ///< by when the service must be ready if it is not replaced
   };
   using All = std::map<std::string, Pending, std::less<>>;
 

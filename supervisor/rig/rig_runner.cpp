@@ -109,13 +109,18 @@ Result<void> RigRunner::make_parts() {
   keeper_.read();
 
   const auto specs = services_of(rig_.config, rig_.catalogue);
-  if (auto made = make_rings_and_files(*adopted, specs); !made) {
-    if (!*adopted) return made;
+  auto made = make_rings_and_files(*adopted, specs);
+  if (!made && *adopted && (*adopted)->services.empty()) {
+    rig_.rings.adopt({});  // systemd stored them; they are of another version or another size
+    adopted->reset();
+    made = make_rings_and_files(*adopted, specs);
+  }
+  if (!made && !*adopted) return made;
+  if (!made)
     return fail(made.error().code,
                 fmt::format("the running services of rig '{0}' cannot be taken over: {1}; "
                             "`handcast down --rig {0}` stops them",
                             rig_.name, made.error().what));
-  }
   for (const auto& spec : specs) rig_.services.add(spec);
   if (*adopted) {
     continue_run((*adopted)->saved);
@@ -157,7 +162,7 @@ int RigRunner::run() {
   try {
     return supervise();
   } catch (const std::exception& problem) {
-    if (keeper_.fd() < 0) throw;
+    if (keeper_.fd() < 0 && !std::getenv("NOTIFY_SOCKET")) throw;
     // Ends here, because the destructors further up end the services, which a successor takes over.
     log::error("the supervisor cannot go on: {}", problem.what());
     std::abort();
@@ -363,6 +368,7 @@ void RigRunner::finish() {
     }
   }
   store_.close();
+  state_->forget();
   if (const int left = end_services(rig_.name, 0, now_ns()); left > 0)
     log::warning("services of rig '{}' that this supervisor did not start were killed: {}",
                  rig_.name, left);

@@ -22,7 +22,8 @@ namespace {
 /// Sections (with those inside them) and single settings.
 using Paths = std::vector<std::string>;
 
-/// Files that may change under their names: their content counts, too.
+/// Files that may change under their names: their content counts, too, of a large one its size and
+/// time, because the supervisor must not read a film.
 const Paths kFiles{"calibration", "projector2.calibration", "hand.left",
                    "hand.right",  "content.left",           "content.right"};
 
@@ -73,9 +74,13 @@ class Hash {
 
 std::string content_of(const config::Setting& setting) {
   const auto& file = *std::get<std::string*>(setting.target);
+  constexpr std::uintmax_t kLarge = 1 << 20;
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return {};
-  return read_input(file, kMostMesh).value_or("");
+  const auto bytes = std::filesystem::file_size(file, error);
+  if (bytes <= kLarge) return read_input(file, kLarge).value_or("");
+  const auto time = std::filesystem::last_write_time(file, error).time_since_epoch().count();
+  return fmt::format("{} {}", bytes, time);
 }
 
 /// The word of SERVICE.NAME; null if there is no such setting.

@@ -22,10 +22,11 @@ namespace {
 
 /// The most slots that a ring can have: the recorder may be 0.25 s late at 946 Hz.
 constexpr int kMarkSlots = 254;
-/// Three readers with two leases each, and two for the writer: a loan never fails.
+/// Three readers with two leases each, and two for the writer: a loan never fails. A fourth
+/// (camera2, projector2) has a lease for as long as it copies.
 constexpr int kImageSlots = 8;
-/// One reader with two leases, and two for the writer.
-constexpr int kPictureSlots = 4;
+/// Two readers with two leases each, and two for the writer.
+constexpr int kPictureSlots = 6;
 
 /// The newest, the one that is written, and one to write meanwhile: its reader takes no lease.
 constexpr int kGuestSlots = 3;

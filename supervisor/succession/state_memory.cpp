@@ -103,6 +103,8 @@ Result<void> StateMemory::save(const SavedRig& rig) {
   return {};
 }
 
+void StateMemory::forget() { layout_->saves.store(0, std::memory_order_release); }
+
 Result<SavedRig> StateMemory::load(const std::string& name) const {
   const auto saves = layout_->saves.load(std::memory_order_acquire);
   const auto& slot = layout_->slots[saves % 2];

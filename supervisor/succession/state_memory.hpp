@@ -34,6 +34,8 @@ class StateMemory {
   int fd() const { return file_.get(); }
   /// Saves the rig. Errors: unavailable (it is too large); the previous state stays.
   Result<void> save(const SavedRig& rig);
+  /// Afterwards nothing is saved: the rig has stopped, but systemd may have stored the memory.
+  void forget();
   /// The saved rig. Errors: bad_data (none was saved, or as parse_saved()).
   Result<SavedRig> load(const std::string& name) const;
 

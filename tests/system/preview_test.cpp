@@ -93,6 +93,19 @@ TEST_F(Preview, AShotShowsTheHandTheRegionsOnItAndTheLight) {
   EXPECT_EQ(kCamera.count(image, is_lit_hand), 0) << "a layer that was not chosen";
 }
 
+TEST_F(Preview, ABlackoutIsSeenAndSaidWhereverPeopleLook) {
+  const auto rig = up({"--set", "twin.motion=builtin:still"});
+  wait_until_light();
+  EXPECT_THAT(handcast({"status"}).output, Not(HasSubstr("the light is off")));
+  ASSERT_EQ(handcast({"blackout"}).exit_code, 0);
+  const auto dark = shot();
+  EXPECT_EQ(kLight.count(dark, is_coloured), 0);
+  EXPECT_EQ(kCamera.count(dark, is_coloured), 0);
+  EXPECT_THAT(handcast({"status"}).output, HasSubstr("the light is off: light.blackout is on"));
+  ASSERT_EQ(handcast({"blackout", "off"}).exit_code, 0);
+  EXPECT_GT(kLight.count(shot(), is_coloured), 1000);
+}
+
 TEST_F(Preview, AShotShowsTheLightOfTheSecondProjector) {
   Arguments two{"--set", "twin.motion=builtin:still"};
   for (const char* setting : {"calibration=config/calibrations/left_of_two.toml",

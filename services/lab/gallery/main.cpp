@@ -10,6 +10,7 @@
 #include "ipc/base/exit_code.hpp"
 #include "ipc/base/log.hpp"
 #include "ipc/base/program.hpp"
+#include "ipc/base/write_whole.hpp"
 #include "services/content/looks_folder.hpp"
 #include "services/lab/gallery/gallery.hpp"
 
@@ -30,6 +31,8 @@ int write(const Wanted& wanted) {
   const auto looks = wanted.sources.empty() ? content::look_names() : wanted.sources;
   if (looks.empty())
     return complain({Errc::bad_config, "there are no looks in this installation; name a SOURCE"});
+  if (!wanted.sheet.empty())
+    if (const auto good = check_result_file(wanted.sheet); !good) return complain(good.error());
   auto stage = Gallery::open(wanted);
   if (!stage) return complain(stage.error());
   int code = kExitDone;

@@ -136,7 +136,7 @@ std::string fault_of(const nlohmann::json& json, const Options& options) {
 
 Result<std::string> run(const Options& options) {
   if (!options.json_file.empty())
-    if (auto writable = check_writable(options.json_file); !writable)
+    if (auto writable = check_result_file(options.json_file); !writable)
       return tl::make_unexpected(writable.error());
   const auto rig = config::load_rig(options.rig_file, options.settings);
   if (!rig) return tl::make_unexpected(rig.error());

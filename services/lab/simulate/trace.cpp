@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include "ipc/base/clock.hpp"
-#include "ipc/base/output_file.hpp"
+#include "ipc/base/write_whole.hpp"
 
 namespace handcast::simulate {
 
 Result<Trace> Trace::open(const std::filesystem::path& file) {
-  if (auto possible = check_output(file); !possible) return tl::make_unexpected(possible.error());
+  if (auto possible = check_result_file(file); !possible)
+    return tl::make_unexpected(possible.error());
   std::ofstream stream(file);
   if (!stream) return fail(Errc::bad_config, fmt::format("{}: cannot be written", file.string()));
   stream << "time_s,hand,landmark,true_x_px,true_y_px,tracker_x_px,tracker_y_px,corrected_x_px,"

@@ -21,7 +21,7 @@ h1 { font-weight: 500; } h2 { font-size: 1.1rem; margin-top: 2.2rem; }
 svg { display: block; width: 100%; height: auto; } svg text { fill: var(--ink); font: 12px system-ui, sans-serif; }
 .bar0 { fill: var(--first); } .bar1 { fill: var(--second); } .axis { stroke: var(--ink); stroke-opacity: .18; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; } td, th { padding: .2rem .9rem .2rem 0; text-align: right; } td:first-child, th:first-child { text-align: left; }
-figure { margin: 0; } img { max-width: 100%; } small { opacity: .75; }
+figure { margin: 0; } pre { white-space: pre-wrap; } img { max-width: 100%; } small { opacity: .75; }
 </style>
 <h1>TITLE</h1>
 )";

@@ -107,7 +107,7 @@ Result<std::string> write_picture(const JndOptions& options) {
 
 Result<std::string> run(const JndOptions& options) {
   if (!options.json_file.empty())
-    if (auto writable = check_writable(options.json_file); !writable)
+    if (auto writable = check_result_file(options.json_file); !writable)
       return tl::make_unexpected(writable.error());
   if (!options.analysed.empty()) return analyse_files(options);
   if (options.simulates) return simulate(options);

@@ -83,6 +83,8 @@ Result<int> measure_all(const Options& options, const config::Rig& rig, const Ru
 }
 
 Result<int> print_board(const Options& options) {
+  if (auto good = check_result_file(options.board_pdf); !good)
+    return tl::make_unexpected(good.error());
   return write_whole(options.board_pdf, calib::board_pdf(options.board)).map([&] {
     fmt::print("{}: print it at true scale (100 %), and glue it on something flat\n",
                options.board_pdf.string());

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
+#include "config/live/live_board.hpp"
 #include "config/rig.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/control/control_client.hpp"
@@ -216,28 +218,45 @@ Finding tracker_of(const Seen& seen, double seconds) {
           "hold a hand in the tracker's view while the doctor looks"};
 }
 
-Finding light_of(const json& status, const std::string& projector, const json& ring) {
+/// What a person, a cue or the night watch has switched off is no fault.
+std::optional<Finding> darkness_of(const std::string& rig) {
+  const auto now =
+      config::LiveBoard::open(rig).and_then([](const auto& board) { return board.rig_now(); });
+  const auto why = now ? config::why_dark(now->light) : std::string();
+  if (why.empty()) return std::nullopt;
+  return Finding{"light", Grade::advice, why + ": the hands are dark",
+                 "`handcast blackout off`, `handcast master 1`, or the night watch's hours"};
+}
+
+/// `before`: the status some seconds ago.
+Finding light_of(const json& before, const json& status, const std::string& projector,
+                 double shown) {
   const auto check = "light of " + projector;
   const auto light = object_in(object_in(status, "light"), projector);
   if (light.empty())
     return {check, Grade::fault, "none came",
             fmt::format("`handcast status` says why {} waits", projector)};
-  const double missed = number_in(light, "missed_refreshes");
-  const auto sentence = fmt::format("{:.0f} refreshes without a new frame; times by the {}", missed,
-                                    light.value("times_by", std::string("?")));
-  if (missed <= kMostMissed * number_in(ring, "count")) return {check, Grade::good, sentence, ""};
+  const double all = number_in(light, "missed_refreshes"),
+               missed = all - number_in(object_in(object_in(before, "light"), projector),
+                                        "missed_refreshes");
+  const auto sentence = fmt::format(
+      "{:.0f} refreshes without a new frame, {:.0f} since the start of the rig; times by the {}",
+      missed, all, light.value("times_by", std::string("?")));
+  if (missed <= kMostMissed * shown) return {check, Grade::good, sentence, ""};
   return {check, Grade::fault, sentence,
           fmt::format("lower {0}.rate_hz, or give it a core ([{0}.process])", projector)};
 }
 
 /// The rate and the light of each projector of the rig.
-void judge_projectors(const json& status, std::vector<Finding>& findings) {
+void judge_projectors(const json& before, const json& status, std::vector<Finding>& findings) {
   for (const auto at : {config::Viewpoint::first, config::Viewpoint::second}) {
     const auto projector = config::name_at_projector(at, "projector");
-    const auto ring = ring_in(status, config::name_at_projector(at, "projection.frames"));
+    const auto stream = config::name_at_projector(at, "projection.frames");
+    const auto ring = ring_in(status, stream);
     if (ring.empty() && at == config::Viewpoint::second) continue;
     findings.push_back(judge_rate(ring, projector + " rate", projector + ".rate_hz"));
-    findings.push_back(light_of(status, projector, ring));
+    const double shown = number_in(ring, "count") - number_in(ring_in(before, stream), "count");
+    findings.push_back(light_of(before, status, projector, shown));
   }
 }
 
@@ -253,11 +272,18 @@ Finding judge_rate(const json& ring, const std::string& check, const std::string
 }
 
 Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds) {
+  const auto ask = [&] {
+    return control::ask(rig, {.verb = control::Verb::status}).map([](const json& answer) {
+      return object_in(answer, "status");
+    });
+  };
+  const auto before = ask();
+  if (!before) return tl::make_unexpected(before.error());
   const auto seen = watch(rig, seconds);
   if (!seen) return tl::make_unexpected(seen.error());
-  const auto answer = control::ask(rig, {.verb = control::Verb::status});
+  const auto answer = ask();
   if (!answer) return tl::make_unexpected(answer.error());
-  const auto& status = answer->contains("status") ? (*answer)["status"] : *answer;
+  const auto& status = *answer;
   auto findings = services_in(status);
   findings.push_back(judge_rate(ring_in(status, "camera.frames"), "camera rate", "camera.rate_hz"));
   findings.push_back(clock_of(*seen));
@@ -268,7 +294,8 @@ Result<std::vector<Finding>> examine_live(const std::string& rig, double seconds
     auto images = judge_images(seen->greys, seen->with_hand > 0);
     findings.insert(findings.end(), images.begin(), images.end());
   }
-  judge_projectors(status, findings);
+  judge_projectors(*before, status, findings);
+  if (auto dark = darkness_of(rig)) findings.push_back(std::move(*dark));
   return findings;
 }
 

@@ -28,7 +28,7 @@ namespace {
 /// Watches a rig for options.after_s and writes a picture. Errors: those of RigFeed, bad_config or
 /// unavailable (the file cannot be written).
 Result<void> shoot(const Options& options) {
-  if (auto possible = check_writable(options.shot); !possible) return possible;
+  if (auto possible = check_result_file(options.shot); !possible) return possible;
   auto feed = RigFeed::open(options.rig, options.projector);
   if (!feed) return tl::make_unexpected(std::move(feed.error()));
   const auto end_ns = now_ns() + seconds_to_ns(options.after_s);

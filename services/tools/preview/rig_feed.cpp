@@ -43,6 +43,23 @@ void RigFeed::learn_world() {
   if (applied) applied_ = std::move(*applied);
   no_world_ = world ? "" : world.error().what;
   maker_ = std::make_unique<SceneMaker>(world ? std::optional(std::move(*world)) : std::nullopt);
+  board_.reset();
+  if (auto board = config::LiveBoard::open(rig_)) board_.emplace(std::move(*board));
+  light_of_.reset();
+  learn_light();
+}
+
+/// What dims the light on its way out, which the frames in the ring do not have.
+void RigFeed::learn_light() {
+  if (!board_) return;
+  const auto last = board_->now();
+  if (!last || light_of_ == last->header.frame_id) return;
+  light_of_ = last->header.frame_id;
+  const auto rig = board_->rig_now();
+  if (!rig) return;
+  dark_ = config::why_dark(rig->light);
+  const double full = config::rig_at_projector(*rig, projector_).projector.brightness;
+  maker_->set_brightness(dark_.empty() ? full * rig->light.master : 0);
 }
 
 /// A reload may have applied other settings, e.g. another brightness.
@@ -186,6 +203,7 @@ Result<void> RigFeed::look() {
   if (auto well = take_all(poses_); !well) return well;
   if (auto well = take_all(landmarks_); !well) return well;
   take_rates();
+  learn_light();
   return {};
 }
 
@@ -195,6 +213,7 @@ Scene RigFeed::scene() {
   auto scene = maker_->make(frame ? &**frame : nullptr, projection ? &**projection : nullptr);
   if (!no_world_.empty())
     scene.missing.insert(scene.missing.begin(), "only images are shown: " + no_world_);
+  if (!dark_.empty()) scene.missing.insert(scene.missing.begin(), "the light is off: " + dark_);
   scene.missing.insert(scene.missing.begin(), missing_.begin(), missing_.end());
   return scene;
 }

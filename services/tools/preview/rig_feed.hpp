@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/live/live_board.hpp"
 #include "config/sections/viewpoint.hpp"
 #include "ipc/client/stream.hpp"
 #include "ipc/msg/camera_frame.hpp"
@@ -68,6 +69,7 @@ class RigFeed {
       : rig_(std::move(rig)), projector_(projector) {}
   void learn_world();
   void learn_changes();
+  void learn_light();
   template <class T>
   Result<void> open_input(std::string_view name, Input<T>& input);
   Result<void> take_pair();
@@ -83,8 +85,11 @@ class RigFeed {
   std::vector<std::string> missing_;  ///< sentences about what is not shown
   std::string applied_;               ///< the settings that the world was made from, TOML
   std::string no_world_;              ///< why the rig's settings are not known; empty if they are
+  std::string dark_;                  ///< why the light is off; empty if it is on
   std::string silent_;                ///< why the supervisor does not answer; empty if it does
   std::unique_ptr<SceneMaker> maker_;
+  std::optional<config::LiveBoard> board_;  ///< empty: the settings are those of the file
+  std::optional<std::uint64_t> light_of_;   ///< the change after which learn_light() looked
   Input<msg::CameraFrame> camera_;
   Input<msg::HandPoses> poses_;
   Input<msg::Landmarks> landmarks_;

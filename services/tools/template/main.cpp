@@ -37,7 +37,8 @@ int write(const std::string& folder, const std::string& rig_file,
     return config::quoted(std::filesystem::absolute(file).string());
   };
   fmt::print(
-      "Paint on them, and name the pictures in the rig file:\n\n[content]\nleft = {}\nright = {}\n",
+      "Paint on those with lines, and name what you painted in the rig file:\n\n[content]\nleft = "
+      "{}\nright = {}\n",
       named((*written)[0]), named((*written)[2]));
   return kExitDone;
 }

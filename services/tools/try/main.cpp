@@ -71,7 +71,7 @@ int try_all(Wanted wanted, const std::vector<std::string>& sources, const fs::pa
     return complain({Errc::bad_config, fmt::format("{}: cannot be created: {}",
                                                    wanted.folder.string(), refused.message())});
   if (!json.empty())
-    if (const auto good = check_writable(json); !good) return complain(good.error());
+    if (const auto good = check_result_file(json); !good) return complain(good.error());
   std::vector<Report> reports;
   std::set<std::string> names;
   for (const auto& source : sources) {

@@ -45,6 +45,20 @@ TEST(LiveValues, TextsAreKept) {
   EXPECT_EQ(rig->content.left, "text:a, 'b'");
 }
 
+TEST(LiveValues, ATextThatCouldNotBeReadAgainIsRefused) {
+  EXPECT_THAT(changed("", {"content.left=text:Gr\xfc\xdf"
+                           "e"}),
+              HasSubstr("is not UTF-8"));
+}
+
+TEST(LiveValues, ThereIsAlwaysRoomForABlackout) {
+  msg::LiveSettings settings;
+  const std::string most(settings.values.bytes.size() - 1, 'x');
+  EXPECT_FALSE(change(settings, most, "content.left = x", "test", kSecond_ns));
+  EXPECT_TRUE(change(settings, most.substr(600), "content.left = x", "test", 2 * kSecond_ns));
+  EXPECT_TRUE(change(settings, most.substr(100), "light.blackout = true", "test", 4 * kSecond_ns));
+}
+
 TEST(LiveValues, ChangesAreTakenBackAndDoneAgain) {
   msg::LiveSettings settings;
   for (int i = 1; i <= 3; ++i) {

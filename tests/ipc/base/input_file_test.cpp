@@ -2,6 +2,7 @@
 #include "ipc/base/input_file.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -36,6 +37,19 @@ TEST_F(InputFile, IsReadWhole) {
 TEST_F(InputFile, ThatIsNotThereIsNamedWithTheReason) {
   EXPECT_EQ(refusal("/nowhere/rig.toml"),
             "/nowhere/rig.toml: cannot be read: No such file or directory");
+}
+
+TEST_F(InputFile, ThatCannotBeReadNowMayBeReadLater) {
+  std::ofstream(scratch_.path() / "file") << "1";
+  rlimit usual{};
+  getrlimit(RLIMIT_NOFILE, &usual);
+  const rlimit none{.rlim_cur = 0, .rlim_max = usual.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+  const auto read = read_input(scratch_.path() / "file", 100);
+  setrlimit(RLIMIT_NOFILE, &usual);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, Errc::unavailable);
+  EXPECT_EQ(read_input("/nowhere/rig.toml", 100).error().code, Errc::bad_config);
 }
 
 TEST_F(InputFile, WithOneByteTooManyIsRefused) {

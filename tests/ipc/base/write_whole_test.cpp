@@ -250,6 +250,16 @@ TEST_F(WriteWhole, APipeOrFolderIsNotWrittenAndNotWaitedFor) {
   }
 }
 
+TEST_F(WriteWhole, AResultDoesNotReplaceARigFile) {
+  const auto rig = folder_ / "show.toml";
+  EXPECT_TRUE(check_result_file(rig)) << "there is none yet";
+  make(rig, "name = \"show\"");
+  EXPECT_THAT(check_result_file(rig).error().what, HasSubstr("show.toml: is a TOML file"));
+  EXPECT_TRUE(check_writable(rig));
+  make(folder_ / "show.json", "{}");
+  EXPECT_TRUE(check_result_file(folder_ / "show.json"));
+}
+
 TEST_F(WriteWhole, ADeviceIsWrittenInPlace) {
   EXPECT_THAT(write_whole("/dev/full", "text").error().what, HasSubstr("No space left on device"));
   EXPECT_TRUE(write_whole("/dev/null", "text"));

@@ -43,6 +43,20 @@ class Known : public ::testing::Test {
     const auto tip = joint_of_landmark(8);
     return glm::distance(hand.joints().at_m[tip], reported.at_m[tip]);
   }
+  /// How far the tip of the middle finger is believed to be from its place after two seconds in
+  /// which the tracker has its two upper joints 6 cm beside them, m.
+  double middle_off_m() {
+    const auto truth = in_camera(calibration_, pose_);
+    auto reported = truth;
+    for (const int landmark : {11, 12}) reported.at_m[joint_of_landmark(landmark)].x += 0.06;
+    for (int i = 0; i < 200; ++i) {
+      time_ns_ += 10'000'000;
+      known_.add(calibration_.camera, {time_ns_, reported, seen_, {}});
+    }
+    const auto tip = joint_of_landmark(12);
+    const ArticulatedHand hand(reported, known_.errors_at(time_ns_));
+    return glm::distance(hand.joints().at_m[tip], truth.at_m[tip]);
+  }
   double shift_m() const { return known_.errors_at(time_ns_)[error::kShift]; }
 
   /// A second and a half in which the tracker loses the hand, a millimetre at a time.
@@ -58,7 +72,7 @@ class Known : public ::testing::Test {
   }();
   const msg::HandPose pose_ =
       pose_of(Side::left, samples::posed(*load_hand_or_default({}, Side::left), samples::kPinch));
-  const msg::HandLandmarks seen_ = [this] {
+  msg::HandLandmarks seen_ = [this] {
     const auto px = project_landmarks(calibration_, pose_).value();
     msg::HandLandmarks seen;
     for (int i = 0; i < kLandmarks; ++i) seen.points[i] = {px[i].x, px[i].y, 1, 2};
@@ -67,6 +81,12 @@ class Known : public ::testing::Test {
   std::int64_t time_ns_ = 0;
   KnownErrors known_;
 };
+
+TEST_F(Known, ALandmarkOutsideOfTheImageDoesNotMakeTheOthersOutliers) {
+  for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));
+  seen_.points[8] = {};
+  EXPECT_LT(middle_off_m(), 0.012) << "of 0.06";
+}
 
 TEST_F(Known, WhatWasKnownBeforeALossHoldsAfterIt) {
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(add(0));

@@ -14,6 +14,18 @@ TEST(Presence, AHandThatIsTrackedIsAllThere) {
     EXPECT_EQ(presence.at(ms * kMs, (ms - ms % 9 - 14) * kMs, std::nullopt), 1) << ms;
 }
 
+TEST(Presence, ASlowSensorDoesNotMakeTheLightFlicker) {
+  for (const int interval_ms : {50, 66, 100}) {  // a webcam, whose landmarks are 60 ms old
+    Presence presence;
+    for (int ms = 1000; ms < 3000; ++ms) {
+      const auto seen_ns = (ms - ms % interval_ms - 60) * kMs;
+      const float share = presence.at(ms * kMs, seen_ns, seen_ns);
+      if (ms > 2000) EXPECT_EQ(share, 1) << interval_ms << " at " << ms;
+    }
+    EXPECT_EQ(presence.at(3700 * kMs, 2940 * kMs, 2940 * kMs), 0) << "then it is gone";
+  }
+}
+
 /// The share of light in every millisecond after a last tracker sample at 0 ms.
 std::vector<float> silent_for(int last_ms, std::optional<std::int64_t> seen_every_ms) {
   Presence presence;

@@ -159,6 +159,19 @@ TEST_F(BareRig, IsUpAlthoughOneServiceDoesNotGetReady) {
       << rig->log();
 }
 
+TEST_F(BareRig, ARestartOfAServiceThatDoesNotGetReadyIsAnsweredAndBlocksNothing) {
+  make_daemon("landmarks", kNeverReady);
+  write_rig(std::string("[supervisor]\nready_s = 1\nstop_s = 1\n") + kNoObserver);
+  const auto rig = up();
+  ASSERT_TRUE(eventually([] { return services().is_object(); })) << rig->log();
+  for (int i = 0; i < 2; ++i) {
+    const auto answer = restart("landmarks");
+    ASSERT_FALSE(answer);
+    EXPECT_THAT(answer.error().what, HasSubstr("landmarks is not ready yet, and goes on trying"));
+  }
+  EXPECT_TRUE(reload());
+}
+
 TEST_F(BareRig, AServiceThatIsSwitchedOnAgainUnderTheNextSupervisorIsHeard) {
   write_rig(kObserver);
   const auto rig = ready_rig();

@@ -337,6 +337,23 @@ TEST(Fingerprint, AFileThatChangedUnderItsNameIsAChange) {
   EXPECT_NE(fingerprint_of("pose", rig, built()), before);
 }
 
+TEST(Fingerprint, ALargeFileCountsByItsSizeAndTime) {
+  const test::Scratch scratch;
+  config::Rig rig;
+  const auto film = scratch.path() / "film.mp4";
+  rig.content.left = film;
+  const auto now = [&] { return fingerprint_of("content", rig, built()); };
+  std::ofstream(film) << "short";
+  const auto shorter = now();
+  std::filesystem::resize_file(film, std::uintmax_t{1} << 40);  // nobody can read so much
+  const auto before = now();
+  EXPECT_NE(before, shorter);
+  EXPECT_EQ(now(), before);
+  std::filesystem::last_write_time(
+      film, std::filesystem::last_write_time(film) + std::chrono::seconds(1));
+  EXPECT_NE(now(), before);
+}
+
 TEST(Fingerprint, WithAnotherBackEndItIsThatOfARigThatAsksForIt) {
   EXPECT_EQ(backend_of("pose", with_backend({}, "pose", "replay")), "replay");
   EXPECT_EQ(backend_of("observer", {}), "");

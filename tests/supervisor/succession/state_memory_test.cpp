@@ -38,6 +38,15 @@ TEST(StateMemory, TheLastStateIsLoadedElsewhere) {
   EXPECT_FALSE(memory.load("sofa"));
 }
 
+TEST(StateMemory, OfARigThatHasStoppedNothingIsLoaded) {
+  auto memory = StateMemory::create().value();
+  ASSERT_TRUE(memory.save(desk_since(41)));
+  memory.forget();
+  EXPECT_FALSE(elsewhere(memory).load("desk"));
+  ASSERT_TRUE(memory.save(desk_since(42)));
+  EXPECT_EQ(elsewhere(memory).load("desk").value().epoch_ns, 42);
+}
+
 TEST(StateMemory, ItsPagesAreReservedAndItsSizeIsFixed) {
   const auto memory = StateMemory::create().value();
   struct stat status {};

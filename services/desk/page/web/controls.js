@@ -289,6 +289,15 @@ export function showLight(settings) {
     settings.set('light.master', String(fader.value / 100));
   });
   settings.follow('light.master', guard.show);
+  for (const path of ['light.blackout', 'light.master']) settings.follow(path, () => dimPictures(settings));
+}
+
+/** Shows the projectors' pictures as they leave: frames in the rings have neither blackout nor master. */
+function dimPictures(settings) {
+  const isOff = settings.toml.get('light.blackout') === 'true';
+  const light = isOff ? 0 : parse(settings.toml.get('light.master') ?? '1');
+  for (const name of ['light', 'light2']) $(name).style.filter = light < 1 ? `brightness(${light ** (1 / 2.2)})` : '';
+  setText($('light-caption'), light > 0 ? 'Light' : `Light: off (${isOff ? 'blackout' : 'master'})`);
 }
 
 /** Two states to compare: what is turned belongs to the one that is shown. */

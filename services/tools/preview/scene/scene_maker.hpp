@@ -115,6 +115,11 @@ class SceneMaker {
   void push(const msg::Landmarks& landmarks);
   /// @}
 
+  /// How bright the light is from now on, 0..1.
+  void set_brightness(double brightness) {
+    if (world_) world_->brightness = brightness;
+  }
+
   /// The scene at the exposure of `frame`. Either may be null. Best if the poses of the time of
   /// the light are known already, i.e. some 30 ms after it.
   Scene make(const msg::CameraFrame* frame, const msg::Projection* projection);
