@@ -2,6 +2,7 @@
 """handcast benchmark: runs its plans, and writes benchmark.json, benchmark.md and benchmark.html with charts A and B."""
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 
@@ -90,6 +91,7 @@ def run(values, complain):
     folder, people = folder_of_plans(values.plans), number_of(values, "people", MOST_PEOPLE)
     jobs = ["-j", str(count)] if (count := number_of(values, "jobs", 4096)) else []
     row, out = row_of(values), pathlib.Path(values.out).resolve()
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # then subprocess.run() ends the sweep
     if values.images:
         record(folder, people, pathlib.Path(values.images).resolve(), jobs)
         return DONE

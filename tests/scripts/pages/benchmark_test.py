@@ -2,11 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """handcast benchmark."""
 import json
+import pathlib
 import shutil
+import signal
+import subprocess
+import time
 import tomllib
 import unittest
 
-from programs import REPOSITORY, Test
+from programs import PATIENCE_S, REPOSITORY, Test, program
 from sweeps import write_sweep
 
 from pages.benchmark.plans import FIRST_PERSON, PLANS, Row, folder_of_plans, write_plan
@@ -128,6 +132,19 @@ class TheProgram(Test):
         self.assert_needs_no_network(page)
         self.assertEqual(page.count("<figure>"), 2, "charts A and B")
         self.assertIn("my method", page)
+
+    def test_ends_its_sweep_when_it_is_ended(self):
+        command = [program("benchmark"), "--plans", self.plans, "--out", self.folder / "out"]
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        end = time.monotonic() + PATIENCE_S
+        while not list(self.folder.glob("out/*.csv")):  # the sweep has begun
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        sweep, = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+        process.terminate()
+        self.assertEqual(process.wait(PATIENCE_S), 128 + signal.SIGTERM)
+        self.assertFalse(pathlib.Path(f"/proc/{sweep}").exists())
 
     def test_says_what_is_wrong(self):
         for words, why in ((["--people", "many"], "--people many: must be a whole number"),
