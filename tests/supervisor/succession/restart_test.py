@@ -14,6 +14,7 @@ import unittest
 
 PATIENCE_S = 30
 FIRST_PASSED = 3  # SD_LISTEN_FDS_START
+PARKED = 500      # numbers that nothing has, for the way there
 
 
 class Systemd:
@@ -40,9 +41,9 @@ class Systemd:
         stored = dict(self.store)
         words = {"NOTIFY_SOCKET": self.path, "LISTEN_FDS": str(len(stored)), "LISTEN_FDNAMES": ":".join(stored)}
         # Numbers from 3 on, and the variable with the number of the process itself.
-        moves = "; ".join(f"exec {FIRST_PASSED + i}<&{1000 + i}" for i in range(len(stored)))
+        moves = "; ".join(f"exec {FIRST_PASSED + i}<&{PARKED + i}" for i in range(len(stored)))
         return subprocess.Popen(["bash", "-c", f"{moves or ':'}; export LISTEN_PID=$$; exec \"$@\"", "-", *command],
-                                env=environment | words, preexec_fn=lambda: [os.dup2(fd, 1000 + i) for i, fd in enumerate(stored.values())],
+                                env=environment | words, preexec_fn=lambda: [os.dup2(fd, PARKED + i) for i, fd in enumerate(stored.values())],
                                 close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
 
