@@ -48,7 +48,7 @@ struct MipLayout {
   /// @{
   constexpr int stride() const { return width + 2; }
   constexpr int rows() const {
-    const int border = smooth ? 1 : 2;  // the nearest texel of the lower edge is read with the next
+    const int border = smooth ? 1 : 3;  // a nearest texel is read with those right of it and below
     return first_row(levels() - 1) + (padded_height() >> (levels() - 1)) + border;
   }
   /// @}

@@ -101,7 +101,7 @@ TEST_F(Traces, WhatCannotBeAskedIsToldInASentence) {
   const auto rig = up();
   wait_until_light();
   const auto nowhere = handcast({"trace", "-o", "/nowhere/x.pftrace"});
-  EXPECT_EQ(nowhere.exit_code, 111);
+  EXPECT_EQ(nowhere.exit_code, 100);
   EXPECT_THAT(nowhere.log, HasSubstr("/nowhere/x.pftrace"));
 }
 

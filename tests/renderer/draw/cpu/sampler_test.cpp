@@ -93,6 +93,19 @@ TEST(Sampler, AMapLeadsToTheTexelsOfItsLevel) {
   }
 }
 
+TEST(Sampler, TheLowerRightCornerIsWithinTheChain) {
+  for (const bool smooth : {true, false})
+    for (const int height : {200, 256}) {  // rows are padded to 256
+      const MipChain chain(Texture(4, height), smooth);
+      const Sampler sampler(chain.view());
+      const auto place = sampler.maps()[0].place({1, 1});
+      Lookup at{};
+      at.set(0, place.x, place.y, sampler.stride, sampler.fraction);
+      const auto last = at.index[0] + sampler.stride + 1;
+      EXPECT_LT(last, sampler.stride * chain.layout().rows()) << smooth << ' ' << height;
+    }
+}
+
 TEST(Sampler, PlacesOutsideThePictureAreMovedToItsEdge) {
   const MipChain chain(Texture(4, 4, 0xffffffff), true);
   const TexelMap map = Sampler(chain.view()).maps()[0];
