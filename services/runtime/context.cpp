@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "ipc/base/exit_code.hpp"
 #include "ipc/daemon/contract.hpp"
@@ -29,7 +30,7 @@ Context::Context(const daemon::ServiceDescription& description, config::Rig rig,
     : description_(description),
       filed_(std::move(rig)),
       rig_(filed_),
-      calibration_(calibration),
+      calibration_(std::move(calibration)),
       supervision_(daemon::Supervision::from_environment(description.name)) {
   if (supervision_.has_ring(msg::kLiveSettings))
     if (auto ring = open_segment(msg::kLiveSettings))

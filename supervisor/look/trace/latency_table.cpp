@@ -29,7 +29,7 @@ class Ways {
   }
   std::vector<WayLatency> take() {
     const auto is_of_first = [](const Way& way) { return !way.to.ends_with('2'); };
-    std::ranges::stable_partition(ways_, is_of_first);
+    std::stable_partition(ways_.begin(), ways_.end(), is_of_first);
     std::vector<WayLatency> latencies;
     for (auto& way : ways_) latencies.push_back({way.from, way.to, Spans(std::move(way.spans_ns))});
     return latencies;
