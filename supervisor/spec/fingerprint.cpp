@@ -230,6 +230,7 @@ std::vector<std::string> idle_settings(const config::Rig& rig, const Catalogue& 
         idle[why].push_back(setting.path);
     }
   std::vector<std::string> sentences;
+  sentences.reserve(idle.size());
   for (const auto& [why, paths] : idle)
     sentences.push_back(fmt::format("{} {} no effect, because {}", join(paths, ", "),
                                     paths.size() == 1 ? "has" : "have", why));
