@@ -56,11 +56,8 @@ class Restart(unittest.TestCase):
         self.rig = self.folder / "show.toml"
         self.systemd = Systemd(self.folder)
 
-    def handcast(self, *words):
-        return subprocess.run([HANDCAST, *words], env=self.environment, capture_output=True, text=True, check=False)
-
-    def run_once(self, settings, while_up=()):
-        """Runs the rig until it is up, does something, and stops it as systemd would. Returns its log."""
+    def run_once(self, settings, command):
+        """Runs the rig until it is up, calls handcast, and stops the rig as systemd would. Returns its log and what handcast printed."""
         self.rig.write_text("desk.page.listen = \"\"\ncamera.rate_hz = 30\nprojector.rate_hz = 30\nobserver.enabled = false\n" + settings)
         unit = self.systemd.start([HANDCAST, "up", str(self.rig), "--no-keeper"], self.environment)
         self.addCleanup(unit.kill)
@@ -71,21 +68,22 @@ class Restart(unittest.TestCase):
         while not any("is up" in line for line in lines) and unit.poll() is None:
             self.assertLess(time.monotonic(), end, "".join(lines))
             time.sleep(0.05)
-        for words in while_up:
-            self.assertEqual(self.handcast(*words).returncode, 0)
+        done = subprocess.run([HANDCAST, *command], env=self.environment, capture_output=True, text=True, check=False)
         unit.terminate()
         self.assertEqual(unit.wait(PATIENCE_S), 0, "".join(lines))
         reader.join()
         unit.stderr.close()
-        return "".join(lines)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return "".join(lines), done.stdout
 
-    def test_with_other_sizes_and_without_what_was_set(self):
-        self.run_once("", [["blackout", "on"]])
+    def test_has_nothing_of_the_run_before(self):
+        self.run_once("", ["blackout", "on"])
         self.assertIn("supervisor.state", self.systemd.store)
-        log = self.run_once("content.width_px = 320\n", [["get", "light.blackout"]])
-        self.assertNotIn("taken over", log)
+        log, blackout = self.run_once("", ["get", "light.blackout"])
+        self.assertIn("light.blackout = false", blackout)
         self.assertNotIn("died", log)
-        self.run_once("")
+        log, _ = self.run_once("content.width_px = 320\n", ["status"])
+        self.assertNotIn("taken over", log)
 
 
 if __name__ == "__main__":
