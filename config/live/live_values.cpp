@@ -86,6 +86,16 @@ Result<void> check_possible(const Rig& rig) {
   return {};
 }
 
+/// The differences of a rig that is possible, if they can be read again.
+Result<std::string> values_to_keep(const Rig& filed, const Rig& rig) {
+  if (const auto possible = check_possible(rig); !possible)
+    return tl::make_unexpected(possible.error());
+  auto values = differences(filed, rig);
+  if (auto why = why_unreadable(values); !why.empty())
+    return fail(Errc::bad_config, std::move(why));
+  return values;
+}
+
 /// Adds the values of a step, and drops the oldest steps if there is no room.
 template <std::size_t N>
 void push(msg::MessageText<N>& steps, std::string_view values) {
@@ -134,21 +144,14 @@ Result<std::string> changed_values(const Rig& filed, std::string_view values,
   if (!faults.empty()) return tl::make_unexpected(faults.to_error());
   const auto rig = change_rig(filed, {std::string(kWhere), without(values, paths)}, set);
   if (!rig) return tl::make_unexpected(rig.error());
-  if (const auto possible = check_possible(*rig); !possible)
-    return tl::make_unexpected(possible.error());
-  auto changed = differences(filed, *rig);
-  if (auto why = why_unreadable(changed); !why.empty())
-    return fail(Errc::bad_config, std::move(why));
-  return changed;
+  return values_to_keep(filed, *rig);
 }
 
 Result<std::string> values_of_preset(const Rig& filed, const std::string& toml,
                                      std::string_view file) {
-  const auto rig = change_rig(filed, {std::string(file), toml}, {});
-  if (!rig) return tl::make_unexpected(rig.error());
-  if (const auto possible = check_possible(*rig); !possible)
-    return tl::make_unexpected(possible.error());
-  return differences(filed, *rig);
+  return change_rig(filed, {std::string(file), toml}, {}).and_then([&](const Rig& rig) {
+    return values_to_keep(filed, rig);
+  });
 }
 
 Result<void> change(msg::LiveSettings& settings, std::string_view values, std::string_view what,

@@ -67,8 +67,8 @@ AbruptChange Abruptness::add(const HandGlimpse& glimpse) {
   const auto step_ns = before_ ? std::max<std::int64_t>(1, last_->time_ns - before_->time_ns) : 1;
   const double steps =
       last_ ? static_cast<double>(now.time_ns - last_->time_ns) / static_cast<double>(step_ns) : 0;
-  const bool is_slow_camera = span_ns < kLongest_ns && std::abs(std::log2(steps)) < 1.3;
-  if (span_ns < kShort_ns || is_slow_camera) {
+  const bool is_regular = span_ns < kLongest_ns && steps > 0.4 && steps < 2.5;  // a slow camera
+  if (span_ns < kShort_ns || is_regular) {
     const Latest latest{*before_, *last_, now, steps};
     for (int i = 0; i < kLandmarks; ++i)
       change.landmarks[i] = more_abrupt(change_px(&HandGlimpse::tracker_px, latest, i),

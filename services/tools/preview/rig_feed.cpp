@@ -45,7 +45,7 @@ void RigFeed::learn_world() {
   maker_ = std::make_unique<SceneMaker>(world ? std::optional(std::move(*world)) : std::nullopt);
   board_.reset();
   if (auto board = config::LiveBoard::open(rig_)) board_.emplace(std::move(*board));
-  light_of_.reset();
+  dimmed_by_.reset();
   learn_light();
 }
 
@@ -53,8 +53,8 @@ void RigFeed::learn_world() {
 void RigFeed::learn_light() {
   if (!board_) return;
   const auto last = board_->now();
-  if (!last || light_of_ == last->header.frame_id) return;
-  light_of_ = last->header.frame_id;
+  if (!last || dimmed_by_ == last->header.frame_id) return;
+  dimmed_by_ = last->header.frame_id;
   const auto rig = board_->rig_now();
   if (!rig) return;
   dark_ = config::why_dark(rig->light);

@@ -89,7 +89,7 @@ class RigFeed {
   std::string silent_;                ///< why the supervisor does not answer; empty if it does
   std::unique_ptr<SceneMaker> maker_;
   std::optional<config::LiveBoard> board_;  ///< empty: the settings are those of the file
-  std::optional<std::uint64_t> light_of_;   ///< the change after which learn_light() looked
+  std::optional<std::uint64_t> dimmed_by_;  ///< the change after which learn_light() looked
   Input<msg::CameraFrame> camera_;
   Input<msg::HandPoses> poses_;
   Input<msg::Landmarks> landmarks_;

@@ -49,6 +49,9 @@ TEST(LiveValues, ATextThatCouldNotBeReadAgainIsRefused) {
   EXPECT_THAT(changed("", {"content.left=text:Gr\xfc\xdf"
                            "e"}),
               HasSubstr("is not UTF-8"));
+  const auto preset = values_of_preset(Rig(), "content.left = \"a.png\"", "/M\xfcller/p.toml");
+  ASSERT_FALSE(preset);
+  EXPECT_THAT(preset.error().what, HasSubstr("is not UTF-8"));
 }
 
 TEST(LiveValues, ThereIsAlwaysRoomForABlackout) {
