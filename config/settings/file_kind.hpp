@@ -5,8 +5,7 @@
 
 namespace handcast::config {
 
-/// Why printed settings could not be read again: a text that a person has given is not UTF-8. A
-/// sentence with the first such line; "" if all are.
+/// A sentence about the first line of printed settings that is not UTF-8; "" if they can be read.
 std::string why_unreadable(std::string_view toml);
 
 /// Why a text cannot be TOML at all, before it is parsed: it is in another encoding (UTF-16,
